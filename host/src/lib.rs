@@ -1,0 +1,2 @@
+//! The host side of `patchray`: files in, pictures and numbers out.
+pub mod scene;

@@ -1,0 +1,2 @@
+//! The command `patchray`.
+fn main() {}
