@@ -1,0 +1,258 @@
+//! Every bound on work, the count of work done, and what a call says when a bound ran out.
+//!
+//! [`Limits`] holds two kinds of numbers. *Parameters* shape an algorithm (how many Newton iterations a start may take);
+//! reaching one is part of the algorithm. *Budgets* bound a counter of [`Work`] over one call, that is one ray through the
+//! whole scene; reaching one ends the call with [`GaveUp`], which is neither a hit nor a miss.
+
+use crate::ray::Hit;
+use crate::scalar::Scalar;
+
+/// By which rule a coherent method believes that a ray meets a patch at most once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Acceptance {
+    /// The paper's: unless eq. (1), tan α > b/h, flags the ray as nearly tangential. Likely, not certain.
+    #[default]
+    Paper,
+    /// Only where the patch's projection along the ray is proved injective
+    /// ([`Crossing::at_most_once`](crate::patch::Crossing::at_most_once)). A rational patch is never proved.
+    Proved,
+}
+
+/// The bounds of one call: one ray through the whole scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits<S> {
+    /// Parameter: evaluations of the surface that one Newton start may take, halved steps included. Starts that succeed
+    /// need 2 to 4; each one more is paid only by starts that fail, and now and then saves one.
+    pub newton_iterations: u32,
+    /// Parameter: starts per patch, at most 3 (the paper's number): the parallelogram, the entrance, the exit. Fewer is
+    /// faster and loses roots at silhouettes.
+    pub newton_starts: u32,
+    /// Parameter: how often one Newton step may be halved because the residual grew. 0 is the undamped method.
+    pub newton_halvings: u32,
+    /// Parameter: how far from the ray a root may lie, relative to the scene's frame (coordinates below 1). Smaller costs
+    /// up to one more evaluation per root; below some 8 roundings roots are refused for noise.
+    pub tolerance: S,
+    /// Parameter: the factor f in eq. (1), read as tan α > f · b/h; the paper's is 1. Smaller flags more rays as critical,
+    /// which costs time and loses fewer double roots.
+    pub critical_factor: S,
+    /// Parameter: what the coherent methods take for "met at most once".
+    pub acceptance: Acceptance,
+    /// Budget: surfaces whose box is tested.
+    pub surfaces: u32,
+    /// Budget: inner nodes of binary trees tested.
+    pub nodes: u32,
+    /// Budget: patches whose parallelepiped is tested.
+    pub patches: u32,
+    /// Budget: voxels visited, of the scene's grid and the surfaces' grids together.
+    pub voxels: u32,
+    /// Budget: Newton iterations, that is evaluations of a surface.
+    pub newton_steps: u32,
+}
+
+impl<S: Scalar> Default for Limits<S> {
+    /// The paper's values where it gives one. The budgets are a hundred times what the hardest ray of the common teapot
+    /// needs: no honest ray of such a scene meets them, and a pathological one ends within milliseconds.
+    fn default() -> Self {
+        Limits {
+            newton_iterations: 12,
+            newton_starts: 3,
+            newton_halvings: 3,
+            tolerance: S::TOLERANCE,
+            critical_factor: S::ONE,
+            acceptance: Acceptance::Paper,
+            surfaces: 100_000,
+            nodes: 1_000_000,
+            patches: 1_000_000,
+            voxels: 1_000_000,
+            newton_steps: 100_000,
+        }
+    }
+}
+
+/// How large a scene is, for [`Limits::worst_case`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extent {
+    /// Surfaces in the scene.
+    pub surfaces: u32,
+    /// Inner nodes of all binary trees (0 for a method without them).
+    pub nodes: u32,
+    /// Patches of all surfaces.
+    pub patches: u32,
+    /// The most voxels that one line can pass in the scene's grid.
+    pub scene_voxels: u32,
+    /// The most voxels that one line can pass, summed over the surfaces' grids (0 for a method without them).
+    pub surface_voxels: u32,
+    /// How often a method may walk the grid of one surface for one ray: 0, or 2 with a testing ray first.
+    pub walks: u32,
+}
+
+impl<S: Scalar> Limits<S> {
+    /// The most work one call can do under these limits, whatever the ray, in a scene of this extent.
+    pub fn worst_case(&self, extent: &Extent) -> Work {
+        let walks = extent.walks.max(1);
+        // A remembered point and the verification's starts come on top of those of the full search.
+        let starts_per_patch = self.newton_starts.saturating_add(extent.walks.min(1));
+        let patches = extent.patches.saturating_mul(walks).min(self.patches);
+        let starts = patches.saturating_mul(starts_per_patch).saturating_add(extent.surfaces);
+        Work {
+            surfaces_tested: extent.surfaces.min(self.surfaces),
+            nodes_visited: extent.nodes.min(self.nodes),
+            patches_tested: patches,
+            voxels_visited: extent
+                .surface_voxels
+                .saturating_mul(extent.walks)
+                .saturating_add(extent.scene_voxels)
+                .min(self.voxels),
+            newton_starts: starts,
+            newton_steps: starts.saturating_mul(self.newton_iterations).min(self.newton_steps),
+            critical: patches,
+            unresolved: patches,
+            intersection_points: starts,
+            verified: extent.surfaces,
+            decided_by_list: extent.surfaces,
+            start_failed: extent.surfaces,
+            full_searches: extent.surfaces,
+        }
+    }
+}
+
+macro_rules! counters {
+    ($($(#[$doc:meta])* $name:ident,)*) => {
+        /// What one call did. A call begins by setting all to 0; the caller sums over rays as it likes.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub struct Work {
+            $($(#[$doc])* pub $name: u32,)*
+        }
+
+        impl Work {
+            /// How many counters there are.
+            pub const COUNT: usize = [$(stringify!($name)),*].len();
+            /// The counters' names, in the order of [`Work::counts`].
+            pub const NAMES: [&'static str; Work::COUNT] = [$(stringify!($name)),*];
+
+            /// The counters.
+            pub fn counts(&self) -> [u32; Work::COUNT] {
+                [$(self.$name),*]
+            }
+        }
+    };
+}
+
+counters! {
+    /// Surfaces whose min-max box was tested.
+    surfaces_tested,
+    /// Inner nodes of binary trees whose parallelepiped was tested.
+    nodes_visited,
+    /// Patches whose parallelepiped was tested.
+    patches_tested,
+    /// Voxels visited, of the scene's grid and the surfaces' grids together.
+    voxels_visited,
+    /// Newton starts.
+    newton_starts,
+    /// Newton iterations: evaluations of a surface with its derivatives.
+    newton_steps,
+    /// Patches met in the critical case of eq. (1).
+    critical,
+    /// Patches met of which no start led to a root; taken for no hit, as in the paper.
+    unresolved,
+    /// Roots found in the interval, each time they were found: the paper's "intersection points".
+    intersection_points,
+    /// Coherent: points confirmed at once, alone in the testing ray's list.
+    verified,
+    /// Coherent: points confirmed or replaced by Newton over the testing ray's list.
+    decided_by_list,
+    /// Coherent: the remembered start led to no point, or to one that the testing ray could not judge.
+    start_failed,
+    /// Coherent: searches of a surface's whole grid.
+    full_searches,
+}
+
+/// The bound that ran out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// [`Limits::surfaces`].
+    Surfaces,
+    /// [`Limits::nodes`].
+    Nodes,
+    /// [`Limits::patches`].
+    Patches,
+    /// [`Limits::voxels`].
+    Voxels,
+    /// [`Limits::newton_steps`].
+    NewtonSteps,
+    /// The scratch is too small for a surface of this degree: its order is the owner's choice.
+    Scratch,
+    /// Coherence memory with fewer slots than surfaces.
+    Memory,
+    /// A slot of lent memory names a place that is not there: the memory was not filled by this crate.
+    Slot,
+}
+
+impl Limit {
+    /// Its name as the command line writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Limit::Surfaces => "surfaces",
+            Limit::Nodes => "nodes",
+            Limit::Patches => "patches",
+            Limit::Voxels => "voxels",
+            Limit::NewtonSteps => "newton-steps",
+            Limit::Scratch => "scratch",
+            Limit::Memory => "memory",
+            Limit::Slot => "slot",
+        }
+    }
+}
+
+impl core::fmt::Display for Limit {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A call ran out of a bound: neither a hit nor a miss.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GaveUp<S> {
+    /// Which bound.
+    pub limit: Limit,
+    /// The closest hit found by then. It is not an answer: a closer one may exist.
+    pub best: Option<Hit<S>>,
+}
+
+impl<S: Scalar> core::fmt::Display for GaveUp<S> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "gave up: the bound on {} ran out", self.limit.name())
+    }
+}
+
+impl<S: Scalar> core::error::Error for GaveUp<S> {}
+
+/// Counts one unit of work, unless that would pass its budget.
+#[inline(always)]
+pub(crate) fn spend(counter: &mut u32, budget: u32, limit: Limit) -> Result<(), Limit> {
+    if *counter >= budget {
+        return Err(limit);
+    }
+    *counter += 1;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_budget_of_n_allows_n() {
+        let mut counter = 0;
+        assert!((0..3).all(|_| spend(&mut counter, 3, Limit::Patches).is_ok()));
+        assert_eq!(spend(&mut counter, 3, Limit::Patches), Err(Limit::Patches));
+        assert_eq!(counter, 3);
+        assert_eq!(spend(&mut 0, 0, Limit::Patches), Err(Limit::Patches));
+    }
+
+    #[test]
+    fn the_outcome_stays_small_because_it_rides_in_every_return() {
+        assert!(size_of::<Result<Option<Hit<f64>>, GaveUp<f64>>>() <= 40);
+        assert!(size_of::<Result<Option<Hit<f32>>, GaveUp<f32>>>() <= 24);
+    }
+}

@@ -1,0 +1,83 @@
+//! The original numerical method: Barth and Stürzlinger's, with Newton's method in the two-dimensional system.
+//!
+//! The ray is traced through the binary tree of each surface that it may meet. Every patch whose parallelepiped it meets
+//! gives Newton's method a start; all roots count as intersection points, and the closest is the answer. Within a surface
+//! nothing is left out for being farther than a root already found; a whole surface behind the closest hit so far is.
+//!
+//! Source: Barth and Stürzlinger (1993); the paper's section "Barth and Stürzlinger's Algorithm".
+
+use super::starts::{First, from_patch};
+use super::{ScratchView, keep_closest};
+use crate::limits::{GaveUp, Limit, Limits, Work, spend};
+use crate::newton::Root;
+use crate::planes::{DepthRange, Planes};
+use crate::ray::{Hit, Interval, Ray};
+use crate::scene::Scene;
+use crate::subdivide::{Patches, Tree};
+use crate::surface::{Point, Surface};
+
+/// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
+///
+/// `patches` and `tree` have to come from this scene's surfaces. `work` is set to what the call did. A patch whose starts
+/// all fail is taken for no hit, as in the paper, so a miss is not proved.
+pub fn closest<P: Point>(
+    scene: &Scene<'_, P>,
+    patches: &Patches<'_, P::Scalar>,
+    tree: &Tree<'_, P::Scalar>,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P::Scalar>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
+        search(surface, patches, tree, planes, range, limits, scratch, work)
+    })
+}
+
+/// All patches of one surface along the ray, through its binary tree; the closest root.
+fn search<P: Point>(
+    surface: &Surface<'_, P>,
+    patches: &Patches<'_, P::Scalar>,
+    tree: &Tree<'_, P::Scalar>,
+    planes: &Planes<P::Scalar>,
+    range: DepthRange<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P::Scalar>,
+    work: &mut Work,
+) -> Result<Option<Root<P::Scalar>>, Limit> {
+    let number = surface.number as usize;
+    let (nodes, links) = tree.of_surface(patches, number).ok_or(Limit::Slot)?;
+    let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
+    let mut best = None;
+    let (mut inner, mut leaf) = (0_usize, 0_usize);
+    // Ends: `inner + leaf`, the place in the pre-order, grows with each step.
+    while let Some(&below) = links.get(inner + leaf) {
+        if below != 1 {
+            let node = nodes.get(inner).ok_or(Limit::Slot)?;
+            spend(&mut work.nodes_visited, limits.nodes, Limit::Nodes)?;
+            match node.crossing(planes) {
+                Some(crossing) if crossing.overlaps(&range) => inner += 1,
+                _ => {
+                    inner = inner.saturating_add((below as usize).checked_sub(1).ok_or(Limit::Slot)?);
+                    leaf = leaf.saturating_add(below as usize);
+                }
+            }
+            continue;
+        }
+        let patch = patches.get(leaf).ok_or(Limit::Slot)?;
+        leaf += 1;
+        spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
+        let Some(crossing) = patch.bounds().crossing(planes) else {
+            continue;
+        };
+        if !crossing.overlaps(&range) {
+            continue;
+        }
+        let found = from_patch(surface, patch, &crossing, First::AsCritical, planes, limits, work, &mut scratch.basis)?;
+        if let Some(root) = found {
+            keep_closest(&mut best, root, planes, &mut work.intersection_points);
+        }
+    }
+    Ok(best)
+}

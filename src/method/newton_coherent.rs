@@ -1,0 +1,191 @@
+//! The improved numerical method: scan-line coherence, and a testing ray that verifies the closest hit.
+//!
+//! The first ray of a scan line that meets a surface searches the surface's whole grid. For the next ray Newton's method
+//! starts at the previous (u, v); from the point it finds, a testing ray goes back toward the origin. If the testing ray
+//! meets only the patch that holds the point, and meets it once by eq. (1), the point is the closest. Otherwise Newton's
+//! method from the patches that it meets decides.
+//!
+//! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm". Where its text leaves a choice:
+//! - ours: a ray that misses a surface empties the surface's memory, so that the next one searches in full;
+//! - ours: patches are decided in the order in which the testing ray meets them, and no list is kept;
+//! - ours: from a listed patch Newton's method tries the entrance, as the paper says, then the parallelogram and the exit;
+//! - ours: a point that no listed patch holds cannot be judged, and the surface is searched in full.
+
+use super::starts::{First, from_patch};
+use super::{ScratchView, keep_closest};
+use crate::grid::{Grid, Grids};
+use crate::limits::{Acceptance, GaveUp, Limit, Limits, Work, spend};
+use crate::newton::{Root, solve};
+use crate::patch::{Crossing, Patch};
+use crate::planes::{DepthRange, Planes};
+use crate::ray::{Hit, Interval, Ray};
+use crate::scalar::Scalar;
+use crate::scene::Scene;
+use crate::subdivide::Patches;
+use crate::surface::{Point, Surface};
+use crate::verify::testing_ray;
+
+/// Coherence memory: what the previous ray of a scan line left on one surface. A slot of memory that the caller lends, one
+/// per surface and thread.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Remembered<S> {
+    u: S,
+    v: S,
+    /// The scan line that it belongs to, plus one; 0 holds nothing. So nothing need be cleared between scan lines.
+    stamp: u32,
+}
+
+impl<S: Scalar> Remembered<S> {
+    /// What a slot holds before it is filled.
+    pub const EMPTY: Self = Remembered { u: S::ZERO, v: S::ZERO, stamp: 0 };
+}
+
+/// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
+///
+/// `patches` and `grids` have to come from this scene's surfaces. `memory` is lent, a slot per surface; between rays of one
+/// scan line it is to be left alone. `scan_line` numbers the line: a number that no earlier line with this memory had
+/// begins with no coherence (at most 2³² − 2). `work` is set to what the call did.
+pub fn closest<P: Point>(
+    scene: &Scene<'_, P>,
+    patches: &Patches<'_, P::Scalar>,
+    grids: &Grids<'_, P::Scalar>,
+    memory: &mut [Remembered<P::Scalar>],
+    scan_line: u32,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P::Scalar>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    let stamp = scan_line.wrapping_add(1);
+    scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
+        let number = surface.number as usize;
+        let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
+        let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
+        let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
+        let mut search = Search { surface, patches, grid, planes, range, limits, scratch };
+        let previous = if slot.stamp == stamp && stamp != 0 { Some([slot.u, slot.v]) } else { None };
+        let found = match search.from_previous(previous, work)? {
+            Some(root) => Some(root),
+            None => search.in_full(work)?,
+        };
+        *slot = match found {
+            Some(root) => Remembered { u: root.u, v: root.v, stamp },
+            None => Remembered::EMPTY,
+        };
+        // A point beyond the range, verified, proves a miss within it.
+        Ok(found.filter(|root| root.depth <= range.max && planes.t_in_interval(root.depth).is_some()))
+    })
+}
+
+/// One ray and one surface.
+struct Search<'a, 's, 'm, P: Point> {
+    surface: &'a Surface<'m, P>,
+    patches: &'m [Patch<P::Scalar>],
+    grid: Grid<'m, P::Scalar>,
+    planes: &'a Planes<P::Scalar>,
+    range: DepthRange<P::Scalar>,
+    limits: &'a Limits<P::Scalar>,
+    scratch: &'a mut ScratchView<'s, P::Scalar>,
+}
+
+impl<'m, P: Point> Search<'_, '_, 'm, P> {
+    /// The point found from the previous one's (u, v), verified or replaced by a closer one; `None` if the surface has to
+    /// be searched in full.
+    fn from_previous(
+        &mut self,
+        previous: Option<[P::Scalar; 2]>,
+        work: &mut Work,
+    ) -> Result<Option<Root<P::Scalar>>, Limit> {
+        let Some(start) = previous else {
+            return Ok(None);
+        };
+        let point = solve(self.surface, self.planes, start, self.limits, work, &mut self.scratch.basis)?;
+        // A point before the interval says nothing about what lies in it.
+        let point = point.filter(|root| root.depth >= self.range.min);
+        let verified = match point {
+            Some(point) => self.verify(point, work)?,
+            None => None,
+        };
+        work.start_failed += u32::from(verified.is_none());
+        Ok(verified)
+    }
+
+    /// The testing ray: the point itself if it is the closest, a closer one that it leads to, or `None` if it cannot tell.
+    fn verify(&mut self, point: Root<P::Scalar>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+        let Search { surface, patches, ref grid, planes, range, limits, ref mut scratch } = *self;
+        let mut closest = Some(point);
+        let (mut owners, mut alone) = (0_u32, true);
+        work.intersection_points += u32::from(planes.t_in_interval(point.depth).is_some());
+        testing_ray(grid, patches, planes, &point, range.min, limits, work, |listed, work| {
+            if listed.owner {
+                owners += 1;
+                if met_at_most_once(listed.patch, &listed.crossing, limits) {
+                    return Ok(());
+                }
+            }
+            alone = false;
+            let basis = &mut scratch.basis;
+            let first = First::Entrance;
+            let found = from_patch(surface, listed.patch, &listed.crossing, first, planes, limits, work, basis)?;
+            if let Some(root) = found {
+                keep_closest(&mut closest, root, planes, &mut work.intersection_points);
+            }
+            Ok(())
+        })?;
+        if owners == 0 {
+            return Ok(None);
+        }
+        if alone {
+            work.verified += 1;
+        } else {
+            work.decided_by_list += 1;
+        }
+        Ok(closest)
+    }
+
+    /// The closest root by a search of the grid, front to back, that ends where no later voxel can hold a closer one.
+    fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+        work.full_searches += 1;
+        let (origin, direction) = (self.planes.origin(), self.planes.direction());
+        let begin = self.range.min;
+        let start = core::array::from_fn(|k| origin[k] + direction[k] * begin);
+        let mut walk = self.grid.walk(&start, &direction, &self.planes.inverse(), self.range.max - begin);
+        let mut best: Option<Root<P::Scalar>> = None;
+        // Ends with the walk.
+        while let Some(voxel) = walk.advance() {
+            let voxel = voxel.map_err(|()| Limit::Slot)?;
+            spend(&mut work.voxels_visited, self.limits.voxels, Limit::Voxels)?;
+            for item in voxel.fresh() {
+                let patch = self.patches.get(item).ok_or(Limit::Slot)?;
+                spend(&mut work.patches_tested, self.limits.patches, Limit::Patches)?;
+                let Some(crossing) = patch.bounds().crossing(self.planes) else {
+                    continue;
+                };
+                if !crossing.overlaps(&self.range) {
+                    continue;
+                }
+                let (first, basis) = (First::AsCritical, &mut self.scratch.basis);
+                let found = from_patch(self.surface, patch, &crossing, first, self.planes, self.limits, work, basis)?;
+                if let Some(root) = found {
+                    keep_closest(&mut best, root, self.planes, &mut work.intersection_points);
+                }
+            }
+            // A root counts only once the walk has come to it: a patch not met yet may hold a closer one.
+            if best.is_some_and(|root| root.depth <= begin + voxel.exit) {
+                break;
+            }
+        }
+        Ok(best)
+    }
+}
+
+/// Whether the ray is taken to meet the patch once at most.
+#[inline(always)]
+fn met_at_most_once<S: Scalar>(patch: &Patch<S>, crossing: &Crossing<S>, limits: &Limits<S>) -> bool {
+    match limits.acceptance {
+        Acceptance::Paper => !patch.is_critical(crossing, limits.critical_factor),
+        Acceptance::Proved => patch.at_most_once(crossing),
+    }
+}

@@ -1,0 +1,125 @@
+//! One Newton solve: a surface and a ray, from one start, in the two-dimensional system of the ray's planes.
+//!
+//! Source: the paper's section "Performance Comparison of Barth and Stürzlinger's Algorithm". It projects the control net
+//! on the two planes first; ours evaluates the surface in space and projects point and derivatives (a departure: for the
+//! two or three evaluations that a solve takes, projecting the net costs more than the third coordinate).
+//!
+//! A step is judged by what it leaves: by Taylor's theorem a step of (du, dv) leaves at most
+//! [`Surface::bend`](crate::surface::Surface::bend) · (|du| + |dv|)², so the last step needs no evaluation after it. A
+//! small step alone is never enough.
+
+use crate::limits::{Limit, Limits, Work, spend};
+use crate::planes::Planes;
+use crate::scalar::Scalar;
+use crate::surface::{BasisView, Full, Point, Surface};
+
+/// A root: where a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Root<S> {
+    /// Surface parameter, in [0, 1].
+    pub u: S,
+    /// Surface parameter, in [0, 1].
+    pub v: S,
+    /// Depth along the ray, in the frame.
+    pub depth: S,
+    /// Whether the ray is tangent to working precision.
+    pub grazing: bool,
+}
+
+/// Solves from `start`; `None` if the iteration leads to no root, which does not prove that there is none.
+///
+/// The iteration may leave the patch that gave the start: it works on the whole surface.
+#[inline]
+pub fn solve<P: Point>(
+    surface: &Surface<'_, P>,
+    planes: &Planes<P::Scalar>,
+    start: [P::Scalar; 2],
+    limits: &Limits<P::Scalar>,
+    work: &mut Work,
+    basis: &mut BasisView<'_, P::Scalar>,
+) -> Result<Option<Root<P::Scalar>>, Limit> {
+    let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
+    work.newton_starts += 1;
+    let [mut u, mut v] = start.map(|t| t.clamped(zero, one));
+    let (mut from_u, mut from_v) = (u, v);
+    let (mut step_u, mut step_v) = (zero, zero);
+    let mut last = P::Scalar::INFINITY;
+    let mut halvings = 0;
+    let mut held_before = false;
+    // Ends: a fixed number of evaluations.
+    for _ in 0..limits.newton_iterations {
+        spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
+        let jet = surface.net.jet(u, v, basis).map_err(|Full| Limit::Scratch)?;
+        let point = planes.weighted(jet.point);
+        let (along_u, along_v) = (planes.derivative(jet.du), planes.derivative(jet.dv));
+        let weight = jet.point.weight();
+        let residual = point.norm();
+        let determinant = along_u.cross(&along_v);
+        let size = along_u.norm() * along_v.norm();
+        // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
+        if residual <= noise::<P::Scalar>() * weight {
+            let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
+            return Ok(Some(Root { u, v, depth: point.depth / weight, grazing }));
+        }
+        // Damping. A NaN counts as growth.
+        if !(residual < last) {
+            if halvings >= limits.newton_halvings {
+                return Ok(None);
+            }
+            halvings += 1;
+            (step_u, step_v) = (step_u * P::Scalar::HALF, step_v * P::Scalar::HALF);
+            (u, v) = (from_u + step_u, from_v + step_v);
+            continue;
+        }
+        if determinant.abs() <= P::Scalar::EPSILON * size {
+            return Ok(None);
+        }
+        let inverse = one / determinant;
+        let du = along_v.cross(&point) * inverse;
+        let dv = point.cross(&along_u) * inverse;
+        let (next_u, next_v) = (u + du, v + dv);
+        let length = du.abs() + dv.abs();
+        if surface.bend * length * length <= limits.tolerance {
+            // Converged; what is left to see is whether the root lies on the surface or beyond its edge.
+            if !(on_surface(next_u) && on_surface(next_v)) {
+                return Ok(None);
+            }
+            let weight = if P::RATIONAL { weight + jet.du.weight() * du + jet.dv.weight() * dv } else { weight };
+            let depth = (point.depth + along_u.depth * du + along_v.depth * dv) / weight;
+            let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
+            return Ok(Some(Root { u: next_u.clamped(zero, one), v: next_v.clamped(zero, one), depth, grazing }));
+        }
+        // An iterate outside is held at the edge, where a root may lie; a second one in a row is leaving for good.
+        let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
+        let held = held_u != next_u || held_v != next_v;
+        if held && held_before {
+            return Ok(None);
+        }
+        held_before = held;
+        (from_u, from_v, last, halvings) = (u, v, residual, 0);
+        (step_u, step_v) = (held_u - u, held_v - v);
+        (u, v) = (held_u, held_v);
+    }
+    Ok(None)
+}
+
+/// Residuals up to this, in the frame, are rounding of the evaluation: a few sums of numbers below 1.
+#[inline(always)]
+fn noise<S: Scalar>() -> S {
+    S::EPSILON * S::TWO
+}
+
+/// Below this sine of the angle between ray and surface, half the digits of (u, v) are rounding: a grazing hit.
+#[inline(always)]
+fn tangent<S: Scalar>() -> S {
+    // √ε, as a constant of each type.
+    S::from_f64(if S::EPSILON.to_f64() > 1e-10 { 3.5e-4 } else { 1.5e-8 })
+}
+
+/// Whether a parameter lies in [0, 1] up to the rounding of a root that lies on the edge: neighbours that share the edge
+/// must not both refuse it.
+#[inline(always)]
+fn on_surface<S: Scalar>(t: S) -> bool {
+    let slack = S::EPSILON * S::from_u32(64);
+    t >= -slack && t <= S::ONE + slack
+}

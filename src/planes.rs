@@ -1,0 +1,240 @@
+//! The two planes of a ray, in the scene's frame.
+//!
+//! A ray is the intersection of two planes; a point's signed distances to them are its two coordinates in the system that
+//! Newton's method and Bézier clipping solve. The paper takes two orthogonal planes; ours are sheared (a departure): both
+//! contain the axis along which the ray is steepest, so that projecting costs two products instead of six. The distance
+//! √(f² + g²) so measured is at least the point's true distance from the ray, and at most √3 times it.
+
+use crate::ray::Interval;
+use crate::scalar::Scalar;
+use crate::surface::Point;
+
+/// A coordinate axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Axis {
+    /// The first coordinate.
+    X,
+    /// The second coordinate.
+    Y,
+    /// The third coordinate.
+    Z,
+}
+
+impl Axis {
+    /// The axis of the largest |component|; the first of equal ones.
+    #[inline(always)]
+    pub(crate) fn dominant<S: Scalar>(vector: &[S; 3]) -> Axis {
+        let [x, y, z] = vector.map(S::abs);
+        if x >= y {
+            if x >= z { Axis::X } else { Axis::Z }
+        } else if y >= z {
+            Axis::Y
+        } else {
+            Axis::Z
+        }
+    }
+
+    /// The component along this axis.
+    #[inline(always)]
+    pub(crate) fn of<S: Scalar>(self, vector: &[S; 3]) -> S {
+        vector[self as usize]
+    }
+
+    /// The two other axes, in cyclic order.
+    #[inline(always)]
+    fn others(self) -> (Axis, Axis) {
+        match self {
+            Axis::X => (Axis::Y, Axis::Z),
+            Axis::Y => (Axis::Z, Axis::X),
+            Axis::Z => (Axis::X, Axis::Y),
+        }
+    }
+}
+
+/// A stretch of a ray by depth: distance from the moved origin along the ray's steepest axis, in the frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthRange<S> {
+    /// The nearest depth.
+    pub min: S,
+    /// The farthest depth.
+    pub max: S,
+}
+
+/// A ray as its two planes, with the origin moved into the scene's box.
+#[derive(Clone, Copy, Debug)]
+pub struct Planes<S> {
+    /// The steepest axis and the two others.
+    axes: [Axis; 3],
+    /// How much the two other coordinates grow per unit of the steepest one; within [−1, 1].
+    slopes: [S; 2],
+    origin: [S; 3],
+    /// Per unit of depth: ±1 along the steepest axis.
+    direction: [S; 3],
+    inverse: [S; 3],
+    t_origin: S,
+    t_per_depth: S,
+    interval: Interval<S>,
+}
+
+/// What a ray's planes make of a vector or a point: its coordinates f and g in the two planes' system, and its depth.
+#[derive(Clone, Copy, Debug)]
+pub struct Projected<S> {
+    /// Signed distance to the first plane, along the first of the two flatter axes.
+    pub f: S,
+    /// Signed distance to the second plane.
+    pub g: S,
+    /// Depth (of a vector: difference in depth).
+    pub depth: S,
+}
+
+impl<S: Scalar> Projected<S> {
+    /// The two-dimensional cross product of the (f, g) parts.
+    #[inline(always)]
+    pub(crate) fn cross(&self, other: &Self) -> S {
+        self.f * other.g - self.g * other.f
+    }
+
+    /// |f| + |g|, which is at least √(f² + g²).
+    #[inline(always)]
+    pub(crate) fn norm(&self) -> S {
+        self.f.abs() + self.g.abs()
+    }
+}
+
+impl<S: Scalar> Planes<S> {
+    /// From the parts that [`Frame::enter`](crate::frame::Frame::enter) has.
+    #[inline(always)]
+    pub(crate) fn new(
+        axis: Axis,
+        origin: [S; 3],
+        direction: [S; 3],
+        inverse: [S; 3],
+        t_origin: S,
+        t_per_depth: S,
+        interval: Interval<S>,
+    ) -> Self {
+        let (first, second) = axis.others();
+        let forward = axis.of(&direction);
+        let slopes = [first.of(&direction) * forward, second.of(&direction) * forward];
+        Planes { axes: [axis, first, second], slopes, origin, direction, inverse, t_origin, t_per_depth, interval }
+    }
+
+    /// The moved origin, in the frame: where depth is 0.
+    pub fn origin(&self) -> [S; 3] {
+        self.origin
+    }
+
+    /// What one unit of depth adds to a point, in the frame; ±1 along the steepest axis.
+    pub fn direction(&self) -> [S; 3] {
+        self.direction
+    }
+
+    /// 1 / direction, component by component; infinite where the direction is 0.
+    pub fn inverse(&self) -> [S; 3] {
+        self.inverse
+    }
+
+    /// A vector in the two planes' system.
+    #[inline(always)]
+    pub fn vector(&self, vector: &[S; 3]) -> Projected<S> {
+        let [steep, first, second] = self.axes;
+        let along = steep.of(vector);
+        Projected {
+            f: first.of(vector) - self.slopes[0] * along,
+            g: second.of(vector) - self.slopes[1] * along,
+            depth: along * steep.of(&self.direction),
+        }
+    }
+
+    /// A point of the frame in the two planes' system: (0, 0) on the ray.
+    #[inline(always)]
+    pub fn point(&self, point: &[S; 3]) -> Projected<S> {
+        self.vector(&[point[0] - self.origin[0], point[1] - self.origin[1], point[2] - self.origin[2]])
+    }
+
+    /// A control point or a sum of them, times its weight (1 for a plain one): f, g and depth are multiplied by it too.
+    #[inline(always)]
+    pub fn weighted<P: Point<Scalar = S>>(&self, point: P) -> Projected<S> {
+        let [x, y, z] = point.weighted_position();
+        let w = point.weight();
+        self.vector(&[x - self.origin[0] * w, y - self.origin[1] * w, z - self.origin[2] * w])
+    }
+
+    /// A derivative of such a sum, whose weight part is that of the derivative (0 for a plain one).
+    #[inline(always)]
+    pub fn derivative<P: Point<Scalar = S>>(&self, derivative: P) -> Projected<S> {
+        if P::RATIONAL { self.weighted(derivative) } else { self.vector(&derivative.weighted_position()) }
+    }
+
+    /// The caller's t at a depth.
+    #[inline(always)]
+    pub fn t(&self, depth: S) -> S {
+        self.t_origin + depth * self.t_per_depth
+    }
+
+    /// The caller's t at a depth, if it lies in the caller's interval.
+    #[inline(always)]
+    pub fn t_in_interval(&self, depth: S) -> Option<S> {
+        let t = self.t(depth);
+        if self.interval.min <= t && t <= self.interval.max { Some(t) } else { None }
+    }
+}
+
+/// The net of a surface projected on a ray's planes: what Bézier clipping works on. `out` receives, per control point, f
+/// and g times the weight, and the weight.
+pub fn project_net<P: Point>(
+    points: &[P],
+    planes: &Planes<P::Scalar>,
+    out: &mut heapless::vec::VecView<[P::Scalar; 3]>,
+) -> Result<(), crate::surface::Full> {
+    out.clear();
+    for &point in points {
+        let projected = planes.weighted(point);
+        out.push([projected.f, projected.g, point.weight()]).map_err(|_| crate::surface::Full)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Aabb, Frame};
+    use crate::surface::{Plain, Weighted};
+
+    #[test]
+    fn points_of_the_ray_project_to_zero_whatever_the_steepest_axis() {
+        let frame = Frame::new(Aabb { low: [-0.75; 3], high: [0.75; 3] });
+        for direction in [[3.0, 1.0, -2.0], [1.0, -3.0, 2.0], [-1.0, 2.0, -3.0], [0.0, 0.0, 1.0]] {
+            let ray = frame.ray([0.125, -0.25, 0.0625], direction).unwrap();
+            let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
+            for t in [0.0, 0.0625, 0.125] {
+                let p = planes.point(&ray.at(t));
+                assert!(p.norm() < 1e-15, "{p:?}");
+                assert!((planes.t(p.depth) - t).abs() < 1e-15);
+            }
+            // A weight multiplies all three, and its point stays on the ray.
+            let w = planes.weighted(Weighted::new(ray.at(0.125), 4.0));
+            assert!(w.norm() < 1e-14 && (planes.t(w.depth / 4.0) - 0.125).abs() < 1e-15);
+            let mut out = heapless::Vec::<_, 4>::new();
+            project_net(&[Plain([0.5, 0.25, 0.0]); 4], &planes, &mut out).unwrap();
+            assert!(out.iter().all(|q| *q == out[0]));
+        }
+    }
+
+    #[test]
+    fn the_sheared_distance_bounds_the_true_one() {
+        let frame = Frame::new(Aabb { low: [-1.0_f64; 3], high: [1.0; 3] });
+        let ray = frame.ray([0.0; 3], [1.0, 1.0, 1.0]).unwrap();
+        let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
+        for k in 0..100 {
+            let angle = f64::from(k) * 0.0628;
+            let (c, s) = (libm::cos(angle), libm::sin(angle));
+            // A unit vector across the ray.
+            let (a, b) = (libm::sqrt(0.5), libm::sqrt(1.0 / 6.0));
+            let across = planes.vector(&[c * a + s * b, -c * a + s * b, -2.0 * s * b]);
+            let sheared = libm::hypot(across.f, across.g);
+            assert!((1.0 - 1e-12..=3.0_f64.sqrt() + 1e-12).contains(&sheared), "{sheared}");
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! A ray, the stretch of it that counts, and what it hits.
+
+use crate::scalar::Scalar;
+
+/// A ray `origin + t · direction`, in the caller's coordinates; the direction need not be of unit length.
+///
+/// Made by [`Frame::ray`](crate::frame::Frame::ray), which refuses what cannot be traced, so that a `Ray` is valid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray<S> {
+    pub(crate) origin: [S; 3],
+    pub(crate) direction: [S; 3],
+}
+
+impl<S: Scalar> Ray<S> {
+    /// Where t = 0, in the caller's coordinates.
+    pub fn origin(&self) -> [S; 3] {
+        self.origin
+    }
+
+    /// What one unit of t adds, in the caller's coordinates.
+    pub fn direction(&self) -> [S; 3] {
+        self.direction
+    }
+
+    /// The point `origin + t · direction`, in the caller's coordinates.
+    pub fn at(&self, t: S) -> [S; 3] {
+        let [x, y, z] = self.origin;
+        let [dx, dy, dz] = self.direction;
+        [x + t * dx, y + t * dy, z + t * dz]
+    }
+}
+
+/// Why a ray was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayError {
+    /// A coordinate of origin or direction is NaN.
+    NotANumber,
+    /// A coordinate of origin or direction is infinite.
+    Infinite,
+    /// The direction is (0, 0, 0).
+    ZeroDirection,
+    /// Somewhere in the scene the ray's t is too large, or steps of t too small, for the number type.
+    Unrepresentable,
+}
+
+impl core::fmt::Display for RayError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            RayError::NotANumber => "a coordinate is NaN",
+            RayError::Infinite => "a coordinate is infinite",
+            RayError::ZeroDirection => "the direction is zero",
+            RayError::Unrepresentable => "its t in the scene cannot be held by the number type",
+        })
+    }
+}
+
+impl core::error::Error for RayError {}
+
+/// The values of t that count, `[t_min, t_max]`, in units of the ray's direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval<S> {
+    pub(crate) min: S,
+    pub(crate) max: S,
+}
+
+impl<S: Scalar> Interval<S> {
+    /// `[t_min, t_max]`; `None` if one of them is NaN or `t_min > t_max`. Either may be infinite.
+    pub fn new(t_min: S, t_max: S) -> Option<Self> {
+        if t_min <= t_max { Some(Interval { min: t_min, max: t_max }) } else { None }
+    }
+
+    /// `[0, ∞]`: all that lies ahead of the origin.
+    pub fn ahead() -> Self {
+        Interval { min: S::ZERO, max: S::INFINITY }
+    }
+
+    /// The smallest t that counts.
+    pub fn min(&self) -> S {
+        self.min
+    }
+
+    /// The largest t that counts.
+    pub fn max(&self) -> S {
+        self.max
+    }
+}
+
+/// Where a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit<S> {
+    /// Parameter along the ray, in units of its direction.
+    pub t: S,
+    /// Surface parameter, in [0, 1].
+    pub u: S,
+    /// Surface parameter, in [0, 1].
+    pub v: S,
+    /// The surface's number in its scene, from 0.
+    pub surface: u32,
+    /// Whether the ray is tangent there to working precision: t, u and v are then known to about half the digits only.
+    pub grazing: bool,
+}

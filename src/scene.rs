@@ -1,0 +1,307 @@
+//! Many surfaces: their min-max boxes, a uniform grid over them, and the closest hit over all.
+//!
+//! Source: the paper's section "Experimental Results" (uniform space subdivision and min-max boxes reduce unnecessary
+//! ray-surface tests). The scene knows no method: a method is a function that searches one surface within a range of depths.
+
+use crate::arena::{Arena, Need};
+use crate::frame::{Aabb, Frame};
+use crate::grid::{Grid, GridSlot};
+use crate::limits::{GaveUp, Limit, Limits, Work, spend};
+use crate::newton::Root;
+use crate::planes::{DepthRange, Planes};
+use crate::ray::{Hit, Interval, Ray, RayError};
+use crate::scalar::Scalar;
+use crate::surface::{BasisView, Full, Net, NetError, Point, Surface};
+
+/// A surface as a slot of lent memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SurfaceSlot<S> {
+    /// The box of its control points, in the frame, padded.
+    bounds: Aabb<S>,
+    /// See [`Net::bend`].
+    bend: S,
+    /// The first of its control points.
+    first: u32,
+    degree_u: u32,
+    degree_v: u32,
+}
+
+impl<S: Scalar> SurfaceSlot<S> {
+    /// What a slot holds before it is filled.
+    pub const EMPTY: Self = SurfaceSlot {
+        bounds: Aabb { low: [S::ZERO; 3], high: [S::ZERO; 3] },
+        bend: S::ZERO,
+        first: 0,
+        degree_u: 0,
+        degree_v: 0,
+    };
+}
+
+/// Lent memory for a scene.
+#[derive(Debug)]
+pub struct SceneMemory<'m, P: Point> {
+    /// Control points of all surfaces, in the frame.
+    pub points: &'m mut [P],
+    /// One slot per surface.
+    pub surfaces: &'m mut [SurfaceSlot<P::Scalar>],
+    /// Of the scene's grid: one offset per voxel, and one more.
+    pub offsets: &'m mut [u32],
+    /// Of the scene's grid: the surfaces in each voxel.
+    pub references: &'m mut [u32],
+}
+
+/// Slots that a scene needs, and what it was lent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneNeeds {
+    /// Of [`SceneMemory::points`].
+    pub points: Need,
+    /// Of [`SceneMemory::surfaces`].
+    pub surfaces: Need,
+    /// Of [`SceneMemory::offsets`].
+    pub offsets: Need,
+    /// Of [`SceneMemory::references`].
+    pub references: Need,
+}
+
+/// How fine the scene's grid is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneOptions<S> {
+    /// Voxels per surface. More cost memory and steps, fewer cost box tests.
+    pub density: S,
+    /// The most voxels.
+    pub voxels: u32,
+}
+
+impl<S: Scalar> Default for SceneOptions<S> {
+    fn default() -> Self {
+        SceneOptions { density: S::from_f64(8.0), voxels: 1 << 20 }
+    }
+}
+
+/// Why a scene was not built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneError {
+    /// Lent memory is too small; all needs are listed. Lending nothing is how to ask.
+    Memory(SceneNeeds),
+    /// A surface is not valid.
+    Surface {
+        /// Its number.
+        surface: u32,
+        /// What is wrong with it.
+        error: NetError,
+    },
+    /// More surfaces, points or voxels than their numbers can count.
+    TooLarge,
+}
+
+impl core::fmt::Display for SceneError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            SceneError::Memory(needs) => write!(f, "lent memory is too small: {needs:?}"),
+            SceneError::Surface { surface, error } => write!(f, "surface {surface}: {error}"),
+            SceneError::TooLarge => f.write_str("more surfaces or points than 32 bits can count"),
+        }
+    }
+}
+
+impl core::error::Error for SceneError {}
+
+/// Surfaces with a grid over them: a view of lent memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'m, P: Point> {
+    frame: Frame<P::Scalar>,
+    points: &'m [P],
+    surfaces: &'m [SurfaceSlot<P::Scalar>],
+    grid: GridSlot<P::Scalar>,
+    offsets: &'m [u32],
+    references: &'m [u32],
+}
+
+impl<'m, P: Point> Scene<'m, P> {
+    /// Builds a scene from nets in the caller's coordinates: checks them, copies their points into the frame, and builds the
+    /// grid. Too little memory is an error that lists all needs.
+    pub fn build(
+        nets: &[Net<'_, P>],
+        options: &SceneOptions<P::Scalar>,
+        memory: SceneMemory<'m, P>,
+    ) -> Result<Self, SceneError> {
+        let mut bounds = Aabb::EMPTY;
+        for (surface, net) in (0_u32..).zip(nets) {
+            Net::checked(net.degree_u(), net.degree_v(), net.points())
+                .map_err(|error| SceneError::Surface { surface, error })?;
+            bounds = bounds.union(control_box(net));
+        }
+        let frame = Frame::new(bounds);
+        let mut points = Arena::new(memory.points);
+        let mut surfaces = Arena::new(memory.surfaces);
+        let boxes = |k: usize| {
+            let scaled = nets.get(k).map_or(Aabb::EMPTY, control_box);
+            let [low, high] = [scaled.low, scaled.high].map(|corner| frame.from_caller(corner));
+            Aabb { low, high }.padded(Frame::padding())
+        };
+        for (k, net) in nets.iter().enumerate() {
+            let first = u32::try_from(points.len()).map_err(|_| SceneError::TooLarge)?;
+            // Weights matter up to a common factor: the largest is brought near 1, exactly.
+            let heaviest = net.points().iter().fold(P::Scalar::ZERO, |w, p| w.greater(p.weight()));
+            let weight = if P::RATIONAL { -heaviest.binary_exponent() } else { 0 };
+            for point in net.points() {
+                points.push(point.rescaled(frame.exponent(), weight));
+            }
+            let bend = points.since(first as usize).map_or(P::Scalar::ZERO, |scaled| {
+                Net::new(net.degree_u(), net.degree_v(), &*scaled).map_or(P::Scalar::ZERO, |net| net.bend())
+            });
+            let (degree_u, degree_v) = (net.degree_u() as u32, net.degree_v() as u32);
+            surfaces.push(SurfaceSlot { bounds: boxes(k), bend, first, degree_u, degree_v });
+        }
+        let mut offsets = Arena::new(memory.offsets);
+        let mut references = Arena::new(memory.references);
+        let grid = GridSlot::build(nets.len(), boxes, options.density, options.voxels, &mut offsets, &mut references)
+            .map_err(|_| SceneError::TooLarge)?;
+        let needs = SceneNeeds {
+            points: points.need(),
+            surfaces: surfaces.need(),
+            offsets: offsets.need(),
+            references: references.need(),
+        };
+        if ![needs.points, needs.surfaces, needs.offsets, needs.references].iter().all(Need::met) {
+            return Err(SceneError::Memory(needs));
+        }
+        let (points, surfaces) = (points.finish(), surfaces.finish());
+        Ok(Scene { frame, points, surfaces, grid, offsets: offsets.finish(), references: references.finish() })
+    }
+
+    /// The scene's frame.
+    pub fn frame(&self) -> &Frame<P::Scalar> {
+        &self.frame
+    }
+
+    /// The number of surfaces.
+    pub fn len(&self) -> usize {
+        self.surfaces.len()
+    }
+
+    /// Whether there are no surfaces.
+    pub fn is_empty(&self) -> bool {
+        self.surfaces.is_empty()
+    }
+
+    /// The most voxels of the scene's grid that one ray can pass.
+    pub fn longest_walk(&self) -> u32 {
+        self.grid.longest_walk()
+    }
+
+    /// Makes a ray of this scene; see [`Frame::ray`].
+    pub fn ray(&self, origin: [P::Scalar; 3], direction: [P::Scalar; 3]) -> Result<Ray<P::Scalar>, RayError> {
+        self.frame.ray(origin, direction)
+    }
+
+    /// A surface by its number; `None` if there is none, or the memory does not hold it.
+    #[inline]
+    pub fn surface(&self, number: usize) -> Option<Surface<'m, P>> {
+        let slot = self.surfaces.get(number)?;
+        let (n, m, first) = (slot.degree_u as usize, slot.degree_v as usize, slot.first as usize);
+        let count = n.checked_add(1)?.checked_mul(m.checked_add(1)?)?;
+        let points = self.points.get(first..first.checked_add(count)?)?;
+        Some(Surface { number: number as u32, net: Net::new(n, m, points).ok()?, bend: slot.bend })
+    }
+
+    /// The surfaces' nets, in the frame.
+    pub fn nets(&self) -> impl Iterator<Item = Net<'m, P>> {
+        (0..self.len()).map_while(|k| self.surface(k)).map(|surface| surface.net)
+    }
+
+    /// The unit normal at a hit, along ∂S/∂u × ∂S/∂v; zero where there is none. See [`Net::normal`].
+    pub fn normal(
+        &self,
+        hit: &Hit<P::Scalar>,
+        basis: &mut BasisView<'_, P::Scalar>,
+    ) -> Result<[P::Scalar; 3], GaveUp<P::Scalar>> {
+        let give_up = |limit| GaveUp { limit, best: Some(*hit) };
+        let surface = self.surface(hit.surface as usize).ok_or(give_up(Limit::Slot))?;
+        surface.net.normal(hit.u, hit.v, basis).map_err(|Full| give_up(Limit::Scratch))
+    }
+
+    /// The closest hit of a ray over all surfaces, those in front first.
+    ///
+    /// `search` is given a surface, the ray's planes and the range of depths in which a root matters, and returns the
+    /// closest root it finds. `work` is set to what this call did.
+    #[inline]
+    pub fn closest(
+        &self,
+        ray: &Ray<P::Scalar>,
+        interval: &Interval<P::Scalar>,
+        limits: &Limits<P::Scalar>,
+        work: &mut Work,
+        mut search: impl FnMut(
+            &Surface<'m, P>,
+            &Planes<P::Scalar>,
+            DepthRange<P::Scalar>,
+            &mut Work,
+        ) -> Result<Option<Root<P::Scalar>>, Limit>,
+    ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+        *work = Work::default();
+        let Some((planes, range)) = self.frame.enter(ray, interval) else {
+            return Ok(None);
+        };
+        let (origin, direction, inverse) = (planes.origin(), planes.direction(), planes.inverse());
+        let mut best: Option<(Root<P::Scalar>, u32)> = None;
+        let mut farthest = range.max;
+        let mut trace = || -> Result<(), Limit> {
+            let grid = Grid::new(&self.grid, self.offsets, self.references).ok_or(Limit::Slot)?;
+            let mut walk = grid.walk(&origin, &direction, &inverse, range.max);
+            // Ends with the walk, or where no later voxel can hold a closer root.
+            while let Some(voxel) = walk.advance() {
+                let voxel = voxel.map_err(|()| Limit::Slot)?;
+                spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
+                for number in voxel.fresh() {
+                    let slot = self.surfaces.get(number).ok_or(Limit::Slot)?;
+                    spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
+                    let Some((near, far)) = slot.bounds.depths(&origin, &direction, &inverse) else {
+                        continue;
+                    };
+                    let within = DepthRange { min: near.greater(range.min), max: far.lesser(farthest) };
+                    if !(within.min <= within.max) {
+                        continue;
+                    }
+                    let surface = self.surface(number).ok_or(Limit::Slot)?;
+                    let Some(root) = search(&surface, &planes, within, work)? else {
+                        continue;
+                    };
+                    // Of equal depths the lower number wins, so that the answer does not depend on the order of search.
+                    let closer = match best {
+                        Some((old, other)) => {
+                            root.depth < old.depth || (root.depth == old.depth && surface.number < other)
+                        }
+                        None => true,
+                    };
+                    if closer {
+                        best = Some((root, surface.number));
+                        farthest = farthest.lesser(root.depth);
+                    }
+                }
+                if voxel.exit >= farthest {
+                    break;
+                }
+            }
+            Ok(())
+        };
+        let ended = trace();
+        let best = best.map(|(root, surface)| Hit {
+            t: planes.t(root.depth),
+            u: root.u,
+            v: root.v,
+            surface,
+            grazing: root.grazing,
+        });
+        match ended {
+            Ok(()) => Ok(best),
+            Err(limit) => Err(GaveUp { limit, best }),
+        }
+    }
+}
+
+/// The box of a net's control points, in the caller's coordinates.
+fn control_box<P: Point>(net: &Net<'_, P>) -> Aabb<P::Scalar> {
+    net.points().iter().fold(Aabb::EMPTY, |all, p| all.with(p.position()))
+}

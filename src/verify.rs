@@ -1,0 +1,69 @@
+//! The testing ray: from a found point back toward the ray's origin, to see whether the point is the closest.
+//!
+//! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm". The testing ray walks the grid and
+//! meets patches; the caller learns of each as it is met, so that no list is stored (a departure in order only).
+
+use crate::grid::Grid;
+use crate::limits::{Limit, Limits, Work, spend};
+use crate::newton::Root;
+use crate::patch::{Crossing, Patch};
+use crate::planes::{DepthRange, Planes};
+use crate::scalar::Scalar;
+
+/// A patch whose parallelepiped the testing ray meets.
+#[derive(Clone, Copy, Debug)]
+pub struct Listed<'m, S> {
+    /// The patch.
+    pub patch: &'m Patch<S>,
+    /// How the ray, as a line, passes its box.
+    pub crossing: Crossing<S>,
+    /// Whether its domain holds the point to be verified.
+    pub owner: bool,
+}
+
+/// Sends a testing ray from `root` back to depth `nearest`, and calls `visit` with each patch of `patches` whose box it
+/// meets, once each, from the point toward the origin.
+pub fn testing_ray<'m, S: Scalar>(
+    grid: &Grid<'m, S>,
+    patches: &'m [Patch<S>],
+    planes: &Planes<S>,
+    root: &Root<S>,
+    nearest: S,
+    limits: &Limits<S>,
+    work: &mut Work,
+    mut visit: impl FnMut(Listed<'m, S>, &mut Work) -> Result<(), Limit>,
+) -> Result<(), Limit> {
+    let (origin, direction) = (planes.origin(), planes.direction());
+    let start = core::array::from_fn(|k| origin[k] + direction[k] * root.depth);
+    let back = direction.map(|c| -c);
+    let inverse = planes.inverse().map(|c| -c);
+    let mut walk = grid.walk(&start, &back, &inverse, root.depth - nearest);
+    let range = DepthRange { min: nearest, max: root.depth };
+    // Ends with the walk.
+    while let Some(voxel) = walk.advance() {
+        let voxel = voxel.map_err(|()| Limit::Slot)?;
+        spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
+        for item in voxel.fresh() {
+            let patch = patches.get(item).ok_or(Limit::Slot)?;
+            spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
+            if let Some(crossing) = patch.bounds().crossing(planes) {
+                let owner = patch.domain().holds(root.u, root.v);
+                // The owner's box holds the point; another's counts if it reaches between point and origin.
+                if owner || reaches(&crossing, &range) {
+                    visit(Listed { patch, crossing, owner }, work)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether the ray is inside the box anywhere in the range.
+#[inline(always)]
+fn reaches<S: Scalar>(crossing: &Crossing<S>, range: &DepthRange<S>) -> bool {
+    crossing.overlaps(range)
+        && match crossing.pierces() {
+            Some([entrance, exit]) => entrance.depth <= range.max && exit.depth >= range.min,
+            None => true,
+        }
+}
