@@ -1,2 +1,4 @@
 //! From files to data: patch files, ray files and scene files.
+pub mod error;
 pub mod model;
+pub mod source;

@@ -7,6 +7,8 @@
 /// throughout a polynomial surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelSurface {
+    /// Number in its file, from 0. It counts surfaces that were left out, so it need not be an index.
+    pub number: usize,
     /// Degree in u, 1 to 15.
     pub degree_u: usize,
     /// Degree in v, 1 to 15.
@@ -22,4 +24,38 @@ pub struct ModelSurface {
 pub struct Model {
     /// The surfaces.
     pub surfaces: Vec<ModelSurface>,
+}
+
+impl Model {
+    /// The smallest box around all control points; `None` without any.
+    pub fn control_box(&self) -> Option<ControlBox> {
+        let mut points = self.surfaces.iter().flat_map(|surface| &surface.points);
+        let &[x, y, z, _] = points.next()?;
+        let mut control_box = ControlBox { min: [x, y, z], max: [x, y, z] };
+        for point in points {
+            for axis in 0..3 {
+                control_box.min[axis] = control_box.min[axis].min(point[axis]);
+                control_box.max[axis] = control_box.max[axis].max(point[axis]);
+            }
+        }
+        Some(control_box)
+    }
+}
+
+/// A box with its sides along the axes, in the file's units. By the convex hull property it holds the surfaces whose
+/// control points it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ControlBox {
+    /// The smallest coordinates.
+    pub min: [f64; 3],
+    /// The largest coordinates.
+    pub max: [f64; 3],
+}
+
+impl ControlBox {
+    /// The length of the diagonal.
+    pub fn diagonal(&self) -> f64 {
+        let [dx, dy, dz] = [0, 1, 2].map(|axis| self.max[axis] - self.min[axis]);
+        dx.hypot(dy).hypot(dz)
+    }
 }
