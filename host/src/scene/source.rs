@@ -18,7 +18,10 @@ pub struct SourceText {
 impl SourceText {
     /// A text that is in memory; `name` stands for the file's path in errors.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
-        Self { name: name.into(), text: text.into() }
+        Self {
+            name: name.into(),
+            text: text.into(),
+        }
     }
 
     /// Reads the file at `path`; `-` is standard input.
@@ -75,7 +78,15 @@ impl SourceText {
         help: impl Into<String>,
     ) -> InputError {
         let excerpt = Excerpt::of(&self.text, span.clone());
-        Refusal::new(&self.name, excerpt, span, message.into(), label.into(), help.into()).into()
+        Refusal::new(
+            &self.name,
+            excerpt,
+            span,
+            message.into(),
+            label.into(),
+            help.into(),
+        )
+        .into()
     }
 }
 
@@ -152,7 +163,10 @@ impl SourceCode for Excerpt {
         lines_before: usize,
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let local = span.offset().checked_sub(self.offset).ok_or(MietteError::OutOfBounds)?;
+        let local = span
+            .offset()
+            .checked_sub(self.offset)
+            .ok_or(MietteError::OutOfBounds)?;
         let local = SourceSpan::from((local, span.len()));
         let contents = self.text.read_span(&local, lines_before, lines_after)?;
         let offset = self.offset + contents.span().offset();
@@ -167,7 +181,6 @@ impl SourceCode for Excerpt {
     }
 }
 
-
 fn newlines(bytes: &[u8]) -> usize {
     bytes.iter().filter(|&&byte| byte == b'\n').count()
 }
@@ -179,5 +192,8 @@ fn line_start(text: &str, at: usize) -> usize {
 /// The start of the character that holds the byte `at`, or the end of the text.
 fn char_start(text: &str, at: usize) -> usize {
     let at = at.min(text.len());
-    (0..=at).rev().find(|&start| text.is_char_boundary(start)).unwrap_or(0)
+    (0..=at)
+        .rev()
+        .find(|&start| text.is_char_boundary(start))
+        .unwrap_or(0)
 }
