@@ -2,5 +2,7 @@
 pub mod bpt;
 pub mod error;
 pub mod model;
+pub mod nearest;
+pub mod rays;
 pub mod source;
 pub mod teapot;
