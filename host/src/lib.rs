@@ -1,3 +1,5 @@
 //! The host side of `patchray`: files in, pictures and numbers out.
 pub mod number;
+pub mod output;
+pub mod report;
 pub mod scene;

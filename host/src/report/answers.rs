@@ -1,0 +1,258 @@
+//! The answers to a batch of rays, as CSV.
+//!
+//! The header is `ray,hit,t,u,v,patch,nx,ny,nz,status`; then a line per ray, in order. `ray` is its number from 0, `hit` is
+//! 1 for the statuses `ok` and `graze` and 0 for `miss`, `gave-up:LIMIT` and `invalid`. Numbers are the shortest text that
+//! reads back to the same bits in the precision they were computed in. Without a hit they are empty, except that a ray that
+//! was given up has the best so far, which is not an answer.
+use std::io::{self, Write};
+
+use crate::number::{Number, Shortest};
+
+/// Where a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found<S> {
+    /// The parameter of the ray, in units of its direction.
+    pub t: S,
+    /// The parameter of the surface in u, 0 to 1.
+    pub u: S,
+    /// The parameter of the surface in v, 0 to 1.
+    pub v: S,
+    /// The number of the surface in its file, from 0.
+    pub patch: usize,
+    /// The normal there; `None`, which leaves its fields empty, where there is none, as on a collapsed edge.
+    pub normal: Option<[S; 3]>,
+}
+
+/// What became of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Answer<'a, S> {
+    /// The closest hit: status `ok`.
+    Hit(Found<S>),
+    /// The closest hit, where the ray grazes the surface: status `graze`.
+    Graze(Found<S>),
+    /// No hit: status `miss`.
+    Miss,
+    /// Out of budget: status `gave-up:` with the name of the limit.
+    GaveUp {
+        /// The limit that ran out.
+        limit: &'a str,
+        /// The closest hit so far, if there was one.
+        best: Option<Found<S>>,
+    },
+    /// The ray could not be traced: status `invalid`.
+    Invalid,
+}
+
+impl<S> Answer<'_, S> {
+    fn is_hit(&self) -> bool {
+        matches!(self, Self::Hit(_) | Self::Graze(_))
+    }
+
+    fn found(&self) -> Option<&Found<S>> {
+        match self {
+            Self::Hit(found) | Self::Graze(found) => Some(found),
+            Self::GaveUp { best, .. } => best.as_ref(),
+            Self::Miss | Self::Invalid => None,
+        }
+    }
+
+    fn status(&self) -> (&'static str, &str) {
+        match self {
+            Self::Hit(_) => ("ok", ""),
+            Self::Graze(_) => ("graze", ""),
+            Self::Miss => ("miss", ""),
+            Self::GaveUp { limit, .. } => ("gave-up:", limit),
+            Self::Invalid => ("invalid", ""),
+        }
+    }
+}
+
+/// Writes answers one by one; rays are numbered in the order in which they come.
+///
+/// ```
+/// use patchray_host::report::answers::{Answer, Answers, Found};
+/// let mut text = Vec::new();
+/// let mut answers = Answers::new(&mut text)?;
+/// answers.push(&Answer::Hit(Found { t: 4.0_f32, u: 0.1, v: 1.0, patch: 7, normal: Some([0.0, 0.0, 1.0]) }))?;
+/// answers.push(&Answer::<f32>::Miss)?;
+/// answers.finish()?;
+/// assert_eq!(
+///     String::from_utf8_lossy(&text),
+///     "ray,hit,t,u,v,patch,nx,ny,nz,status\n0,1,4,0.1,1,7,0,0,1,ok\n1,0,,,,,,,,miss\n",
+/// );
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub struct Answers<W: Write> {
+    csv: csv::Writer<W>,
+    next: u64,
+    /// The text of one field, kept between fields so that it is allocated once.
+    field: String,
+}
+
+impl<W: Write> Answers<W> {
+    /// Writes the header.
+    ///
+    /// # Errors
+    /// What `output` ran into.
+    pub fn new(output: W) -> io::Result<Self> {
+        let mut csv = csv::Writer::from_writer(output);
+        csv.write_record([
+            "ray", "hit", "t", "u", "v", "patch", "nx", "ny", "nz", "status",
+        ])?;
+        Ok(Self {
+            csv,
+            next: 0,
+            field: String::new(),
+        })
+    }
+
+    /// Writes the line of the next ray.
+    ///
+    /// # Errors
+    /// What the output ran into.
+    pub fn push<S: Number>(&mut self, answer: &Answer<S>) -> io::Result<()> {
+        let ray = self.next;
+        self.next += 1;
+        self.write(format_args!("{ray}"))?;
+        self.write(format_args!("{}", u8::from(answer.is_hit())))?;
+        let found = answer.found();
+        for number in [
+            found.map(|found| found.t),
+            found.map(|found| found.u),
+            found.map(|found| found.v),
+        ] {
+            self.number(number)?;
+        }
+        match found {
+            Some(found) => self.write(format_args!("{}", found.patch))?,
+            None => self.write(format_args!(""))?,
+        }
+        let normal = found.and_then(|found| found.normal);
+        for axis in 0..3 {
+            self.number(normal.map(|normal| normal[axis]))?;
+        }
+        let (status, limit) = answer.status();
+        self.write(format_args!("{status}{limit}"))?;
+        Ok(self.csv.write_record(None::<&[u8]>)?)
+    }
+
+    /// Writes out what is pending.
+    ///
+    /// # Errors
+    /// What the output ran into.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.csv.flush()
+    }
+
+    fn number<S: Number>(&mut self, number: Option<S>) -> io::Result<()> {
+        match number {
+            Some(number) => self.write(format_args!("{}", Shortest(number))),
+            None => self.write(format_args!("")),
+        }
+    }
+
+    fn write(&mut self, field: std::fmt::Arguments) -> io::Result<()> {
+        self.field.clear();
+        // Writing to a string cannot fail.
+        let _ = std::fmt::Write::write_fmt(&mut self.field, field);
+        Ok(self.csv.write_field(&self.field)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn lines<S: Number>(answers: &[Answer<S>]) -> Vec<String> {
+        let mut text = Vec::new();
+        let mut writer = Answers::new(&mut text).expect("to memory");
+        for answer in answers {
+            writer.push(answer).expect("to memory");
+        }
+        writer.finish().expect("to memory");
+        String::from_utf8(text)
+            .expect("UTF-8")
+            .lines()
+            .skip(1)
+            .map(str::to_owned)
+            .collect()
+    }
+
+    #[test]
+    fn a_line_per_status() {
+        let found = Found {
+            t: 1.5e-9_f64,
+            u: 0.25,
+            v: 1.0,
+            patch: 31,
+            normal: None,
+        };
+        let answers = [
+            Answer::Hit(Found {
+                normal: Some([-0.0, 1e300, 0.1]),
+                ..found
+            }),
+            Answer::Graze(found),
+            Answer::Miss,
+            Answer::GaveUp {
+                limit: "clip-steps",
+                best: None,
+            },
+            Answer::GaveUp {
+                limit: "voxels",
+                best: Some(found),
+            },
+            Answer::Invalid,
+        ];
+        let expected = [
+            "0,1,1.5e-9,0.25,1,31,-0,1e300,0.1,ok",
+            "1,1,1.5e-9,0.25,1,31,,,,graze",
+            "2,0,,,,,,,,miss",
+            "3,0,,,,,,,,gave-up:clip-steps",
+            "4,0,1.5e-9,0.25,1,31,,,,gave-up:voxels",
+            "5,0,,,,,,,,invalid",
+        ];
+        assert_eq!(lines(&answers), expected);
+    }
+
+    #[test]
+    fn an_empty_batch_has_a_header() {
+        let mut text = Vec::new();
+        Answers::new(&mut text)
+            .and_then(Answers::finish)
+            .expect("to memory");
+        assert_eq!(text, b"ray,hit,t,u,v,patch,nx,ny,nz,status\n");
+    }
+
+    #[test]
+    fn a_full_disk_is_an_error() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let error = Answers::new(Full)
+            .and_then(Answers::finish)
+            .expect_err("full");
+        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_read_back(numbers in any::<[f32; 6]>(), patch in any::<usize>()) {
+            let [t, u, v, nx, ny, nz] = numbers;
+            let line = lines(&[Answer::Hit(Found { t, u, v, patch, normal: Some([nx, ny, nz]) })]).remove(0);
+            let fields: Vec<_> = line.split(',').collect();
+            for (slot, number) in [2, 3, 4, 6, 7, 8].into_iter().zip(numbers) {
+                prop_assert_eq!(fields[slot].parse::<f32>().map(f32::to_bits), Ok(number.to_bits()));
+            }
+            prop_assert_eq!(fields[5].parse(), Ok(patch));
+        }
+    }
+}
