@@ -1,8 +1,13 @@
 //! From files to data: patch files, ray files and scene files.
+pub mod appearance;
 pub mod bpt;
+pub mod camera;
+mod check;
 pub mod error;
+pub mod file;
 pub mod model;
 pub mod nearest;
 pub mod rays;
 pub mod source;
 pub mod teapot;
+pub mod trace;

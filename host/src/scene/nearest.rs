@@ -1,13 +1,13 @@
 //! The name that a writer may have meant.
 
-/// How alike two names must be (Jaro-Winkler, 0 to 1) to suggest one for the other. Lower suggests more, and more often
-/// something that was not meant; this catches a slip or two of the pen and a wrong ending.
-const ALIKE: f64 = 0.8;
+/// How alike two names must be to suggest one for the other: the part of the longer one's letters that need no change
+/// (Damerau-Levenshtein). Lower suggests more, and more often something that was not meant.
+const ALIKE: f64 = 0.5;
 
 /// The known name that is most like `name`, if any is.
 pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let name = name.to_lowercase();
-    let alike = |known: &str| strsim::jaro_winkler(&name, &known.to_lowercase());
+    let alike = |known: &str| strsim::normalized_damerau_levenshtein(&name, &known.to_lowercase());
     let best = known
         .iter()
         .copied()
@@ -44,6 +44,7 @@ mod tests {
             ("newton_coherent", "newton-coherent"),
             ("t_max", "tmax"),
             ("Eye", "eye"),
+            ("eey", "eye"),
         ] {
             assert_eq!(nearest(slip, &known), Some(meant));
         }

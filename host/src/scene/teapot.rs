@@ -1,17 +1,37 @@
 //! The common teapot: Newell's, with bottom, built in so that it can be drawn without any file.
-use super::bpt;
+use std::path::PathBuf;
+
+use super::bpt::{self, PatchFile};
 use super::error::{InputError, OnInvalid};
+use super::file::{self, Scene};
 use super::model::Model;
+use super::source::SourceText;
 
 /// The patch file `fixtures/patches/teapot.bpt`.
 pub const PATCHES: &str = include_str!("../../../fixtures/patches/teapot.bpt");
+
+/// The scene file `fixtures/scenes/teapot-common.toml`.
+pub const COMMON_SCENE: &str = include_str!("../../../fixtures/scenes/teapot-common.toml");
 
 /// The 32 bicubic surfaces: rim, body, handle, spout, lid, bottom; z up, its own box [-3, 3.434075] × [-2, 2] × [0, 3.15].
 ///
 /// # Errors
 /// None, as long as the fixture is whole.
 pub fn model() -> Result<Model, InputError> {
-    Ok(bpt::parse("teapot.bpt", PATCHES, OnInvalid::Refuse)?.model)
+    Ok(patches()?.model)
+}
+
+/// The teapot in the common view, as the scene file would be read.
+///
+/// # Errors
+/// None, as long as the fixtures are whole.
+pub fn common_scene() -> Result<Scene, InputError> {
+    let source = SourceText::new("teapot-common.toml", COMMON_SCENE);
+    file::load(source, |_| Ok((PathBuf::from("teapot.bpt"), patches()?)))
+}
+
+fn patches() -> Result<PatchFile, InputError> {
+    bpt::parse("teapot.bpt", PATCHES, OnInvalid::Refuse)
 }
 
 #[cfg(test)]
@@ -115,6 +135,38 @@ mod tests {
             "{}",
             own.diagonal()
         );
+    }
+
+    #[test]
+    fn common_view_is_exact_in_f32() {
+        let scene = common_scene().expect("the fixtures are valid");
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../fixtures/scenes/teapot-common.toml"
+        );
+        let from_disk =
+            file::read(path.as_ref(), OnInvalid::Refuse).expect("the fixtures are valid");
+        assert_eq!(
+            (&scene.description, &scene.model),
+            (&from_disk.description, &from_disk.model)
+        );
+
+        let view = scene.description.camera.view(scene.description.image.size);
+        let exact = |vector: [f64; 3]| vector.iter().all(|&x| f64::from(x as f32) == x);
+        assert_eq!(view.eye, [7.6171875, -9.3203125, 7.59375]);
+        assert!(exact(view.eye));
+        for (px, py) in (0..512).flat_map(|py| (0..512).map(move |px| (px, py))) {
+            let direction = view.direction(px, py);
+            let sx = (2.0 * f64::from(px) - 511.0) / 512.0;
+            let sy = (511.0 - 2.0 * f64::from(py)) / 512.0;
+            let stated = [
+                24.75 * -9.0 + sx * 68.0 + sy * -24.0,
+                24.75 * 12.0 + sx * 51.0 + sy * 32.0,
+                24.75 * -8.0 + sy * 75.0,
+            ];
+            assert_eq!(direction, stated);
+            assert!(exact(direction), "{px} {py}");
+        }
     }
 
     #[test]

@@ -1,0 +1,153 @@
+//! What a picture looks like: its size, the light, the material, the background.
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::check::Check;
+use super::error::InputError;
+
+/// The most pixels along a side of an image. More would let a slip of the pen ask for terabytes.
+pub const MAX_SIDE: u32 = 32_768;
+
+/// The table `[image]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// Width and height in pixels, each from 1 to [`MAX_SIDE`]. By default 512 × 512.
+    pub size: [u32; 2],
+}
+
+impl Default for Image {
+    fn default() -> Self {
+        Self { size: [512, 512] }
+    }
+}
+
+/// The table `[light]`: the one light, a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Where it is, in the units of the surfaces. By default at the camera's eye: `None`.
+    pub position: Option<[f64; 3]>,
+    /// Its colour: red, green and blue, linear, 0 to 1. By default white.
+    pub colour: [f64; 3],
+}
+
+impl Default for Light {
+    fn default() -> Self {
+        Self {
+            position: None,
+            colour: [1.0; 3],
+        }
+    }
+}
+
+/// The table `[material]`: how all surfaces return the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Red, green and blue, linear, 0 to 1. By default a light grey.
+    pub colour: [f64; 3],
+    /// The part of the colour that is seen without light. By default 0.15.
+    pub ambient: f64,
+    /// The part of the light that is scattered evenly. By default 0.7.
+    pub diffuse: f64,
+    /// The strength of the highlight. By default 0.3.
+    pub highlight: f64,
+    /// The exponent of the highlight, above 0: the larger, the smaller the spot. By default 40.
+    pub shininess: f64,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            colour: [0.8; 3],
+            ambient: 0.15,
+            diffuse: 0.7,
+            highlight: 0.3,
+            shininess: 40.0,
+        }
+    }
+}
+
+/// The background where a scene file gives none: white.
+pub(super) const BACKGROUND: [f64; 3] = [1.0; 3];
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ImageTable {
+    size: Option<Spanned<Vec<u32>>>,
+}
+
+impl ImageTable {
+    pub(super) fn check(&self, check: &Check) -> Result<Image, InputError> {
+        let Some(size) = &self.size else {
+            return Ok(Image::default());
+        };
+        match size.get_ref()[..] {
+            [width, height]
+                if [width, height]
+                    .iter()
+                    .all(|side| (1..=MAX_SIDE).contains(side)) =>
+            {
+                Ok(Image {
+                    size: [width, height],
+                })
+            }
+            _ => Err(check.source.refuse(
+                size.span(),
+                "this is not the size of an image",
+                format!("not two numbers from 1 to {MAX_SIDE}"),
+                "write width and height in pixels, such as `size = [512, 512]`",
+            )),
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LightTable {
+    position: Option<Spanned<Vec<f64>>>,
+    colour: Option<Spanned<Vec<f64>>>,
+}
+
+impl LightTable {
+    pub(super) fn check(&self, check: &Check) -> Result<Light, InputError> {
+        let mut light = Light::default();
+        if let Some(position) = &self.position {
+            light.position = Some(check.triple("`position` of the light", position)?);
+        }
+        if let Some(colour) = &self.colour {
+            light.colour = check.colour("`colour` of the light", colour)?;
+        }
+        Ok(light)
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MaterialTable {
+    colour: Option<Spanned<Vec<f64>>>,
+    ambient: Option<Spanned<f64>>,
+    diffuse: Option<Spanned<f64>>,
+    highlight: Option<Spanned<f64>>,
+    shininess: Option<Spanned<f64>>,
+}
+
+impl MaterialTable {
+    pub(super) fn check(&self, check: &Check) -> Result<Material, InputError> {
+        let mut material = Material::default();
+        if let Some(colour) = &self.colour {
+            material.colour = check.colour("`colour` of the material", colour)?;
+        }
+        for (name, given, value) in [
+            ("`ambient`", &self.ambient, &mut material.ambient),
+            ("`diffuse`", &self.diffuse, &mut material.diffuse),
+            ("`highlight`", &self.highlight, &mut material.highlight),
+        ] {
+            if let Some(given) = given {
+                *value = check.amount(name, given)?;
+            }
+        }
+        if let Some(shininess) = &self.shininess {
+            material.shininess = check.positive("`shininess`", shininess)?;
+        }
+        Ok(material)
+    }
+}

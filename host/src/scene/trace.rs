@@ -1,0 +1,127 @@
+//! How to trace, as far as a scene file says so; the command line has the last word.
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use clap::ValueEnum;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::check::Check;
+use super::error::InputError;
+
+/// The algorithm that finds hits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Patches in a binary tree, and Newton's iteration from each patch that the ray hits.
+    Newton,
+    /// Patches in a grid, and Newton's iteration from the previous ray's hit, verified by a testing ray.
+    NewtonCoherent,
+}
+
+/// The precision in which hits are computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Precision {
+    /// 32 bits.
+    F32,
+    /// 64 bits.
+    #[default]
+    F64,
+}
+
+/// When a coherent method takes a point for the only one of its patch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Acceptance {
+    /// As the paper does: eq. (1), factor 1.
+    #[default]
+    Paper,
+    /// Only where at most one hit is proved.
+    Proved,
+}
+
+/// The table `[trace]`. What it does not give is `None`, and left to the command line and the kernel's defaults.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TraceSettings {
+    /// The algorithm.
+    pub method: Option<Method>,
+    /// The precision.
+    pub precision: Option<Precision>,
+    /// The acceptance of the coherent methods.
+    pub acceptance: Option<Acceptance>,
+    /// Newton iterations per start, at least 1.
+    pub newton_iterations: Option<u32>,
+    /// Newton starts per patch, at least 1.
+    pub newton_starts: Option<u32>,
+    /// The bound, above 0, to which surfaces are subdivided: less makes more and flatter patches.
+    pub flatness: Option<f64>,
+    /// Voxels of a grid per patch in it, above 0: more makes smaller voxels.
+    pub grid_density: Option<f64>,
+    /// Threads, at least 1.
+    pub threads: Option<u32>,
+    /// The table `[trace.limits]`, sorted by name; the names are not checked here.
+    pub limits: Vec<LimitSetting>,
+}
+
+/// A limit by name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LimitSetting {
+    /// The name as written.
+    pub name: String,
+    /// Its bound.
+    pub value: u64,
+    /// The bytes of the scene file that hold the name, for an error that refuses it.
+    pub span: Range<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TraceTable {
+    method: Option<Method>,
+    precision: Option<Precision>,
+    acceptance: Option<Acceptance>,
+    newton_iterations: Option<Spanned<u32>>,
+    newton_starts: Option<Spanned<u32>>,
+    flatness: Option<Spanned<f64>>,
+    grid_density: Option<Spanned<f64>>,
+    threads: Option<Spanned<u32>>,
+    #[serde(default)]
+    limits: BTreeMap<Spanned<String>, u64>,
+}
+
+impl TraceTable {
+    pub(super) fn check(self, check: &Check) -> Result<TraceSettings, InputError> {
+        let count = |name: &str, number: &Option<Spanned<u32>>| {
+            number
+                .as_ref()
+                .map(|number| check.count(name, number))
+                .transpose()
+        };
+        let positive = |name: &str, number: &Option<Spanned<f64>>| {
+            number
+                .as_ref()
+                .map(|number| check.positive(name, number))
+                .transpose()
+        };
+        Ok(TraceSettings {
+            method: self.method,
+            precision: self.precision,
+            acceptance: self.acceptance,
+            newton_iterations: count("`newton_iterations`", &self.newton_iterations)?,
+            newton_starts: count("`newton_starts`", &self.newton_starts)?,
+            flatness: positive("`flatness`", &self.flatness)?,
+            grid_density: positive("`grid_density`", &self.grid_density)?,
+            threads: count("`threads`", &self.threads)?,
+            limits: self
+                .limits
+                .into_iter()
+                .map(|(name, value)| LimitSetting {
+                    span: name.span(),
+                    name: name.into_inner(),
+                    value,
+                })
+                .collect(),
+        })
+    }
+}
