@@ -16,14 +16,15 @@
 //! assert_eq!(file.model.surfaces[0].points[1], [0.0, 1.0, 0.0, 1.0]);
 //! # Ok::<(), patchray_host::scene::error::InputError>(())
 //! ```
-use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
 use super::error::{InputError, OnInvalid, Skipped};
 use super::model::{Model, ModelSurface};
-use super::source::SourceText;
-use crate::number::Shortest;
+use super::source::{Counted, SourceText};
+pub use writer::write;
+
+mod writer;
 
 /// The highest degree of a surface in either direction; the kernel's working nets are made for it.
 pub const MAX_DEGREE: usize = 15;
@@ -53,24 +54,6 @@ pub fn parse(name: &str, text: &str, on_invalid: OnInvalid) -> Result<PatchFile,
     Reader::new(&SourceText::new(name, text), on_invalid).file()
 }
 
-/// The text of a patch file that reads back to the same bits, with surfaces numbered anew in their order.
-pub fn write(model: &Model) -> String {
-    let mut text = format!("{}\n", model.surfaces.len());
-    for surface in &model.surfaces {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{} {}", surface.degree_u, surface.degree_v);
-        for &[x, y, z, w] in &surface.points {
-            let _ = write!(text, "{} {} {}", Shortest(x), Shortest(y), Shortest(z));
-            let _ = if surface.rational {
-                writeln!(text, " {}", Shortest(w))
-            } else {
-                writeln!(text)
-            };
-        }
-    }
-    text
-}
-
 /// A run of characters without a space, and the byte at which it starts.
 #[derive(Clone, Copy)]
 struct Token<'a> {
@@ -94,8 +77,8 @@ fn line_span(line: &[Token]) -> Range<usize> {
 struct Reader<'a> {
     source: &'a SourceText,
     on_invalid: OnInvalid,
-    /// Byte at which the next line starts.
-    next: usize,
+    /// Where the next line starts.
+    next: Counted,
     /// The line that was read last, for "the file ends here".
     last: Range<usize>,
 }
@@ -124,7 +107,10 @@ impl<'a> Reader<'a> {
         Self {
             source,
             on_invalid,
-            next: bom,
+            next: Counted {
+                offset: bom,
+                lines: 0,
+            },
             last: 0..0,
         }
     }
@@ -150,10 +136,22 @@ impl<'a> Reader<'a> {
         Ok(file)
     }
 
+    /// Refuses the file because of `span`, which is on the line read last or before it.
+    fn refuse(
+        &self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> InputError {
+        self.source
+            .refuse_near(self.next, span, message, label, help)
+    }
+
     /// The first line: the number of surfaces. Nothing is allocated by it, as it may lie.
     fn count(&mut self) -> Result<u64, InputError> {
         let Some(line) = self.line() else {
-            return Err(self.source.refuse(
+            return Err(self.refuse(
                 0..0,
                 "the file is empty",
                 "nothing here",
@@ -162,7 +160,7 @@ impl<'a> Reader<'a> {
         };
         match line[..] {
             [token] if token.text.parse::<u64>().is_ok() => Ok(token.text.parse().unwrap_or(0)),
-            _ => Err(self.source.refuse(
+            _ => Err(self.refuse(
                 line_span(&line),
                 "the first line is not the number of surfaces",
                 "expected one whole number",
@@ -176,20 +174,20 @@ impl<'a> Reader<'a> {
         let line = self.line();
         match line {
             None if number as u64 == count => Ok(None),
-            None => Err(self.source.refuse(
+            None => Err(self.refuse(
                 self.last.clone(),
                 format!("the file holds {number} of the {count} surfaces that its first line promises"),
                 "the file ends after this",
                 format!("add the missing surfaces, or write `{number}` as the first line"),
             )),
             // Points behind a complete surface are too many points of it, whether or not another surface is due.
-            Some(line) if number > 0 && matches!(line.len(), 3 | 4) => Err(self.source.refuse(
+            Some(line) if number > 0 && matches!(line.len(), 3 | 4) => Err(self.refuse(
                 line_span(&line),
                 format!("surface {} has more points than its degrees say", number - 1),
                 "one point too many",
                 "a surface of degrees m n has (m+1)(n+1) points: correct the degrees, or remove the points",
             )),
-            Some(line) if number as u64 == count => Err(self.source.refuse(
+            Some(line) if number as u64 == count => Err(self.refuse(
                 line_span(&line),
                 format!("the file goes on after the {count} surfaces that its first line promises"),
                 "nothing is expected here",
@@ -201,7 +199,7 @@ impl<'a> Reader<'a> {
 
     fn surface(&mut self, number: usize, header: &[Token<'a>]) -> Result<ModelSurface, Fault> {
         let [m, n] = *header else {
-            return Err(Fault::Structure(self.source.refuse(
+            return Err(Fault::Structure(self.refuse(
                 line_span(header),
                 format!("surface {number} does not start with its two degrees"),
                 "expected `m n`",
@@ -212,7 +210,7 @@ impl<'a> Reader<'a> {
         let mut fault = None;
         for (degree, token, direction) in [(degree_u, m, 'u'), (degree_v, n, 'v')] {
             if degree == 0 || degree > MAX_DEGREE as u64 {
-                fault = fault.or(Some(self.source.refuse(
+                fault = fault.or(Some(self.refuse(
                     token.span(),
                     format!("surface {number} has degree {degree} in {direction}"),
                     format!("not from 1 to {MAX_DEGREE}"),
@@ -232,7 +230,7 @@ impl<'a> Reader<'a> {
         let mut arity = None;
         for index in 0..expected {
             let Some(line) = self.line() else {
-                return Err(Fault::Structure(self.source.refuse(
+                return Err(Fault::Structure(self.refuse(
                     self.last.clone(),
                     format!("surface {number} is cut off: it has {index} of the {whole}"),
                     "the file ends after this",
@@ -263,7 +261,7 @@ impl<'a> Reader<'a> {
 
     fn degree(&self, number: usize, token: Token, direction: char) -> Result<u64, InputError> {
         token.text.parse().map_err(|_| {
-            self.source.refuse(
+            self.refuse(
                 token.span(),
                 format!("the degree of surface {number} in {direction} is not a whole number from 1 to {MAX_DEGREE}"),
                 "not a degree",
@@ -313,7 +311,7 @@ impl<'a> Reader<'a> {
             let name = ["x", "y", "z", "the weight"][slot];
             let of = format!("of point {index} of surface {number}");
             let Ok(value) = token.text.parse::<f64>() else {
-                return Err(Fault::Structure(self.source.refuse(
+                return Err(Fault::Structure(self.refuse(
                     token.span(),
                     format!(
                         "{name} {of} is not a number: `{}`",
@@ -343,14 +341,9 @@ impl<'a> Reader<'a> {
             } else {
                 None
             };
-            if let Some((wrong, help)) = wrong {
+            if let (Some((wrong, help)), true) = (wrong, fault.is_none()) {
                 let message = format!("{name} {of} {wrong}");
-                fault = fault.or(Some(self.source.refuse(
-                    token.span(),
-                    message,
-                    "not valid",
-                    help,
-                )));
+                fault = Some(self.refuse(token.span(), message, "not valid", help));
             }
             point[slot] = value;
         }
@@ -361,12 +354,17 @@ impl<'a> Reader<'a> {
     fn line(&mut self) -> Option<Line<'a>> {
         let text = self.source.text();
         // Ends with the text, of which every round takes a line.
-        while self.next < text.len() {
-            let start = self.next;
+        while self.next.offset < text.len() {
+            let start = self.next.offset;
             let end = text[start..]
                 .find('\n')
                 .map_or(text.len(), |newline| start + newline);
-            self.next = end + 1;
+            // The last line may have no end.
+            let ended = usize::from(end < text.len());
+            self.next = Counted {
+                offset: end + ended,
+                lines: self.next.lines + ended,
+            };
             let content = text[start..end].split('#').next().unwrap_or("");
             let line: Line = content
                 .split_ascii_whitespace()

@@ -63,11 +63,6 @@ impl SourceText {
         &self.text
     }
 
-    /// The number, from 1, of the line that holds the byte at `offset`.
-    pub fn line_number(&self, offset: usize) -> usize {
-        newlines(&self.text.as_bytes()[..offset.min(self.text.len())]) + 1
-    }
-
     /// The error that refuses the file because of the bytes `span`: `message` says what is wrong, `label` stands under the
     /// underlined text, `help` says what to write instead.
     pub fn refuse(
@@ -77,7 +72,20 @@ impl SourceText {
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> InputError {
-        let excerpt = Excerpt::of(&self.text, span.clone());
+        self.refuse_near(Counted::default(), span, message, label, help)
+    }
+
+    /// As [`refuse`](Self::refuse), with lines counted from a place near `span`: counting from the start of the file for
+    /// each of many refusals would take the square of its length.
+    pub(super) fn refuse_near(
+        &self,
+        counted: Counted,
+        span: Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> InputError {
+        let excerpt = Excerpt::of(&self.text, span.clone(), counted);
         Refusal::new(
             &self.name,
             excerpt,
@@ -88,6 +96,15 @@ impl SourceText {
         )
         .into()
     }
+}
+
+/// A place in a text up to which lines are counted.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Counted {
+    /// The byte.
+    pub(super) offset: usize,
+    /// The ends of lines before it.
+    pub(super) lines: usize,
 }
 
 /// How many bytes of text an excerpt keeps on either side of what it is about. More shows more of a long line; less keeps
@@ -110,7 +127,7 @@ pub struct Excerpt {
 
 impl Excerpt {
     /// The excerpt of `text`, a whole file, around the bytes `span`.
-    pub(super) fn of(text: &str, span: Range<usize>) -> Self {
+    pub(super) fn of(text: &str, span: Range<usize>, counted: Counted) -> Self {
         let start = char_start(text, span.start);
         let end = char_start(text, span.end.clamp(start, start + MARGIN));
         let this_line = line_start(text, start);
@@ -120,10 +137,16 @@ impl Excerpt {
         let last = next_lines.nth(1).unwrap_or(text.len());
         let last = last.min(char_start(text, end + MARGIN));
         let first_line_start = line_start(text, first);
+        let bytes = text.as_bytes();
+        let line = if first < counted.offset {
+            counted.lines - newlines(&bytes[first..counted.offset])
+        } else {
+            counted.lines + newlines(&bytes[counted.offset..first])
+        };
         Self {
             text: text[first..last].to_owned(),
             offset: first,
-            line: newlines(&text.as_bytes()[..first]),
+            line,
             column: text[first_line_start..first].chars().count(),
         }
     }
@@ -131,7 +154,7 @@ impl Excerpt {
     /// An excerpt that is one line, `line` (counted from 1) of the file, which starts at byte `offset` of it.
     pub(super) fn of_line(text: &str, line: usize, offset: usize, span: Range<usize>) -> Self {
         let within = span.start.saturating_sub(offset)..span.end.saturating_sub(offset);
-        let mut excerpt = Self::of(text, within);
+        let mut excerpt = Self::of(text, within, Counted::default());
         excerpt.offset += offset;
         excerpt.line += line.saturating_sub(1);
         excerpt

@@ -241,6 +241,14 @@ fn damage_behind_an_invalid_value_is_refused() {
 }
 
 #[test]
+fn many_invalid_surfaces_take_no_square_of_time() {
+    let invalid = SQUARE.replace("0 0 0", "nan 0 0");
+    let file = lenient(&format!("50000\n{}", invalid.repeat(50_000))).expect("all are left out");
+    let last = file.skipped.last().expect("one of many");
+    assert_eq!((last.number, last.place.line), (49_999, 2 + 5 * 49_999 + 1));
+}
+
+#[test]
 fn wrong_arity() {
     refused_always(
         &with_point("1 0 0 1"),
