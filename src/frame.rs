@@ -182,7 +182,7 @@ impl<S: Scalar> Frame<S> {
         for _ in 0..2 {
             let step = (middle - axis.of(&origin)) / axis.of(&ray.direction);
             origin = core::array::from_fn(|k| exact_product_sum(step, ray.direction[k], origin[k]));
-            t = t + step;
+            t += step;
         }
         // Where the ray crosses the box's middle plane it is at most a box away sideways, if it meets the box at all.
         let near = S::Vec3::from_array(origin).largest() <= self.reach * S::from_u32(NEAR);
@@ -219,7 +219,7 @@ impl<S: Scalar> Aabb<S> {
 fn refuse_not_finite<S: Scalar>(origin: &[S; 3], direction: &[S; 3]) -> Result<(), RayError> {
     for c in origin.iter().chain(direction) {
         if !c.is_finite() {
-            return Err(if *c == *c { RayError::Infinite } else { RayError::NotANumber });
+            return Err(if c.abs() == S::INFINITY { RayError::Infinite } else { RayError::NotANumber });
         }
     }
     Ok(())

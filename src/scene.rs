@@ -107,13 +107,20 @@ impl core::fmt::Display for SceneError {
 
 impl core::error::Error for SceneError {}
 
+/// What a scene holds beside its slots: plain numbers, to be kept with them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SceneHeader<S> {
+    frame: Frame<S>,
+    grid: GridSlot<S>,
+}
+
 /// Surfaces with a grid over them: a view of lent memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'m, P: Point> {
-    frame: Frame<P::Scalar>,
+    header: SceneHeader<P::Scalar>,
     points: &'m [P],
     surfaces: &'m [SurfaceSlot<P::Scalar>],
-    grid: GridSlot<P::Scalar>,
     offsets: &'m [u32],
     references: &'m [u32],
 }
@@ -168,12 +175,29 @@ impl<'m, P: Point> Scene<'m, P> {
             return Err(SceneError::Memory(needs));
         }
         let (points, surfaces) = (points.finish(), surfaces.finish());
-        Ok(Scene { frame, points, surfaces, grid, offsets: offsets.finish(), references: references.finish() })
+        let header = SceneHeader { frame, grid };
+        Ok(Scene { header, points, surfaces, offsets: offsets.finish(), references: references.finish() })
+    }
+
+    /// The view of memory that was filled before, such as a table in flash, with the header of the scene that filled it.
+    pub fn new(
+        header: SceneHeader<P::Scalar>,
+        points: &'m [P],
+        surfaces: &'m [SurfaceSlot<P::Scalar>],
+        offsets: &'m [u32],
+        references: &'m [u32],
+    ) -> Self {
+        Scene { header, points, surfaces, offsets, references }
+    }
+
+    /// What to keep beside the slots, for [`Scene::new`].
+    pub fn header(&self) -> SceneHeader<P::Scalar> {
+        self.header
     }
 
     /// The scene's frame.
     pub fn frame(&self) -> &Frame<P::Scalar> {
-        &self.frame
+        &self.header.frame
     }
 
     /// The number of surfaces.
@@ -188,12 +212,12 @@ impl<'m, P: Point> Scene<'m, P> {
 
     /// The most voxels of the scene's grid that one ray can pass.
     pub fn longest_walk(&self) -> u32 {
-        self.grid.longest_walk()
+        self.header.grid.longest_walk()
     }
 
     /// Makes a ray of this scene; see [`Frame::ray`].
     pub fn ray(&self, origin: [P::Scalar; 3], direction: [P::Scalar; 3]) -> Result<Ray<P::Scalar>, RayError> {
-        self.frame.ray(origin, direction)
+        self.header.frame.ray(origin, direction)
     }
 
     /// A surface by its number; `None` if there is none, or the memory does not hold it.
@@ -241,14 +265,14 @@ impl<'m, P: Point> Scene<'m, P> {
         ) -> Result<Option<Root<P::Scalar>>, Limit>,
     ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
         *work = Work::default();
-        let Some((planes, range)) = self.frame.enter(ray, interval) else {
+        let Some((planes, range)) = self.header.frame.enter(ray, interval) else {
             return Ok(None);
         };
         let (origin, direction, inverse) = (planes.origin(), planes.direction(), planes.inverse());
         let mut best: Option<(Root<P::Scalar>, u32)> = None;
         let mut farthest = range.max;
         let mut trace = || -> Result<(), Limit> {
-            let grid = Grid::new(&self.grid, self.offsets, self.references).ok_or(Limit::Slot)?;
+            let grid = Grid::new(&self.header.grid, self.offsets, self.references).ok_or(Limit::Slot)?;
             let mut walk = grid.walk(&origin, &direction, &inverse, range.max);
             // Ends with the walk, or where no later voxel can hold a closer root.
             while let Some(voxel) = walk.advance() {

@@ -204,6 +204,9 @@ impl<P: Point, const POINTS: usize> Default for SubdivideScratch<P, POINTS> {
     }
 }
 
+/// Patches, and the tree over them if it was asked for.
+pub type Subdivided<'m, S> = (Patches<'m, S>, Option<Tree<'m, S>>);
+
 /// Subdivides surfaces, given in the frame, into patches, and builds the binary trees if memory for them is offered.
 ///
 /// The tree is part of the result only if `tree` is `Some`. Too little memory is an error that lists all needs, so empty
@@ -215,7 +218,7 @@ pub fn subdivide<'m, 'n, P: Point>(
     scratch: &mut SubdivideScratchView<'_, P>,
     memory: PatchMemory<'m, P::Scalar>,
     tree: Option<TreeMemory<'m, P::Scalar>>,
-) -> Result<(Patches<'m, P::Scalar>, Option<Tree<'m, P::Scalar>>), SubdivideError> {
+) -> Result<Subdivided<'m, P::Scalar>, SubdivideError> {
     let mut patches = Arena::new(memory.patches);
     let mut first = Arena::new(memory.first);
     let wants_tree = tree.is_some();

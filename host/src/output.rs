@@ -59,10 +59,7 @@ pub struct Output {
 enum Sink {
     Stdout(Stdout),
     Straight(File),
-    Replacing {
-        file: NamedTempFile,
-        target: PathBuf,
-    },
+    Replacing { file: NamedTempFile, target: PathBuf },
 }
 
 impl Output {
@@ -71,15 +68,8 @@ impl Output {
     /// # Errors
     /// The path is a folder, its folder does not exist, or the temporary file cannot be made.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
-        let sink = if path == Path::new("-") {
-            Sink::Stdout(io::stdout())
-        } else {
-            Sink::at(path)?
-        };
-        Ok(Self {
-            path: path.to_owned(),
-            sink: BufWriter::new(sink),
-        })
+        let sink = if path == Path::new("-") { Sink::Stdout(io::stdout()) } else { Sink::at(path)? };
+        Ok(Self { path: path.to_owned(), sink: BufWriter::new(sink) })
     }
 
     /// Writes out what is pending and puts the file in its place.
@@ -92,10 +82,9 @@ impl Output {
         // Nothing is pending any more, so that taking the buffer apart loses nothing.
         match self.sink.into_parts().0 {
             Sink::Stdout(_) | Sink::Straight(_) => Ok(()),
-            Sink::Replacing { file, target } => file
-                .persist(target)
-                .map(|_| ())
-                .map_err(|error| failed(&self.path, error.error)),
+            Sink::Replacing { file, target } => {
+                file.persist(target).map(|_| ()).map_err(|error| failed(&self.path, error.error))
+            }
         }
     }
 
@@ -109,10 +98,7 @@ impl Output {
 ///
 /// # Errors
 /// As [`Output::create`] and [`Output::finish`], or what `fill` ran into; the target is then as it was.
-pub fn write(
-    path: &Path,
-    fill: impl FnOnce(&mut Output) -> io::Result<()>,
-) -> Result<(), OutputError> {
+pub fn write(path: &Path, fill: impl FnOnce(&mut Output) -> io::Result<()>) -> Result<(), OutputError> {
     let mut output = Output::create(path)?;
     fill(&mut output).map_err(|reason| output.failed(reason))?;
     output.finish()
@@ -130,19 +116,11 @@ impl Sink {
             Err(_) => (path.to_owned(), None),
         };
         if existing.as_ref().is_some_and(fs::Metadata::is_dir) || shown().ends_with('/') {
-            return Err(OutputError::IsFolder {
-                path: shown().trim_end_matches('/').to_owned(),
-            });
+            return Err(OutputError::IsFolder { path: shown().trim_end_matches('/').to_owned() });
         }
-        if existing
-            .as_ref()
-            .is_some_and(|existing| !existing.is_file())
-        {
+        if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
             // Renaming over a device or a pipe would put a plain file in its place.
-            let file = OpenOptions::new()
-                .write(true)
-                .open(&target)
-                .map_err(|reason| failed(path, reason))?;
+            let file = OpenOptions::new().write(true).open(&target).map_err(|reason| failed(path, reason))?;
             return Ok(Self::Straight(file));
         }
         let folder = match target.parent() {
@@ -150,24 +128,17 @@ impl Sink {
             _ => Path::new("."),
         };
         if !folder.is_dir() {
-            return Err(OutputError::NoFolder {
-                path: shown(),
-                folder: folder.display().to_string(),
-            });
+            return Err(OutputError::NoFolder { path: shown(), folder: folder.display().to_string() });
         }
         let mut builder = tempfile::Builder::new();
         builder.prefix(".patchray-").suffix(".tmp");
         if let Some(permissions) = for_everyone() {
             builder.permissions(permissions);
         }
-        let file = builder
-            .tempfile_in(folder)
-            .map_err(|reason| failed(path, reason))?;
+        let file = builder.tempfile_in(folder).map_err(|reason| failed(path, reason))?;
         if let Some(existing) = existing {
             // Set afterwards, since the user's mask would take some away.
-            file.as_file()
-                .set_permissions(existing.permissions())
-                .map_err(|reason| failed(path, reason))?;
+            file.as_file().set_permissions(existing.permissions()).map_err(|reason| failed(path, reason))?;
         }
         Ok(Self::Replacing { file, target })
     }
@@ -186,10 +157,7 @@ fn for_everyone() -> Option<Permissions> {
 }
 
 fn failed(path: &Path, reason: io::Error) -> OutputError {
-    OutputError::Failed {
-        path: path.display().to_string(),
-        reason,
-    }
+    OutputError::Failed { path: path.display().to_string(), reason }
 }
 
 impl Write for Output {
@@ -230,15 +198,7 @@ mod tests {
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).expect("it can be listed");
-        entries
-            .map(|entry| {
-                entry
-                    .expect("an entry")
-                    .file_name()
-                    .to_string_lossy()
-                    .into_owned()
-            })
-            .collect()
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
     }
 
     #[test]
@@ -253,10 +213,7 @@ mod tests {
             Err(io::Error::other("the ray ran away"))
         });
         let error = error.expect_err("it failed").to_string();
-        assert_eq!(
-            error,
-            format!("cannot write `{}`: the ray ran away", path.display())
-        );
+        assert_eq!(error, format!("cannot write `{}`: the ray ran away", path.display()));
         assert_eq!(fs::read(&path).expect("there"), b"first");
 
         let mut dropped = Output::create(&path).expect("created");
@@ -273,10 +230,7 @@ mod tests {
         assert!(error.to_string().ends_with("it is a folder"), "{error}");
         let missing = folder.path().join("no/out.csv");
         let error = Output::create(&missing).expect_err("no folder");
-        assert!(
-            error.to_string().contains("there is no folder `"),
-            "{error}"
-        );
+        assert!(error.to_string().contains("there is no folder `"), "{error}");
         assert!(error.help().is_some());
         assert!(names(folder.path()).is_empty());
     }
@@ -293,10 +247,7 @@ mod tests {
         write(&link, |out| out.write_all(b"new")).expect("written");
         assert!(fs::symlink_metadata(&link).expect("there").is_symlink());
         assert_eq!(fs::read(&path).expect("there"), b"new");
-        assert_eq!(
-            fs::metadata(&path).expect("there").permissions().mode() & 0o777,
-            0o666
-        );
+        assert_eq!(fs::metadata(&path).expect("there").permissions().mode() & 0o777, 0o666);
 
         let (plain, ours) = (folder.path().join("plain"), folder.path().join("ours"));
         fs::write(&plain, "").expect("written");

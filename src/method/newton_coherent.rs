@@ -66,7 +66,7 @@ pub fn closest<P: Point>(
         let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
         let mut search = Search { surface, patches, grid, planes, range, limits, scratch };
         let previous = if slot.stamp == stamp && stamp != 0 { Some([slot.u, slot.v]) } else { None };
-        let found = match search.from_previous(previous, work)? {
+        let found = match search.resume(previous, work)? {
             Some(root) => Some(root),
             None => search.in_full(work)?,
         };
@@ -93,7 +93,7 @@ struct Search<'a, 's, 'm, P: Point> {
 impl<'m, P: Point> Search<'_, '_, 'm, P> {
     /// The point found from the previous one's (u, v), verified or replaced by a closer one; `None` if the surface has to
     /// be searched in full.
-    fn from_previous(
+    fn resume(
         &mut self,
         previous: Option<[P::Scalar; 2]>,
         work: &mut Work,

@@ -96,14 +96,8 @@ impl<W: Write> Answers<W> {
     /// What `output` ran into.
     pub fn new(output: W) -> io::Result<Self> {
         let mut csv = csv::Writer::from_writer(output);
-        csv.write_record([
-            "ray", "hit", "t", "u", "v", "patch", "nx", "ny", "nz", "status",
-        ])?;
-        Ok(Self {
-            csv,
-            next: 0,
-            field: String::new(),
-        })
+        csv.write_record(["ray", "hit", "t", "u", "v", "patch", "nx", "ny", "nz", "status"])?;
+        Ok(Self { csv, next: 0, field: String::new() })
     }
 
     /// Writes the line of the next ray.
@@ -116,11 +110,7 @@ impl<W: Write> Answers<W> {
         self.write(format_args!("{ray}"))?;
         self.write(format_args!("{}", u8::from(answer.is_hit())))?;
         let found = answer.found();
-        for number in [
-            found.map(|found| found.t),
-            found.map(|found| found.u),
-            found.map(|found| found.v),
-        ] {
+        for number in [found.map(|found| found.t), found.map(|found| found.u), found.map(|found| found.v)] {
             self.number(number)?;
         }
         match found {
@@ -172,38 +162,18 @@ mod tests {
             writer.push(answer).expect("to memory");
         }
         writer.finish().expect("to memory");
-        String::from_utf8(text)
-            .expect("UTF-8")
-            .lines()
-            .skip(1)
-            .map(str::to_owned)
-            .collect()
+        String::from_utf8(text).expect("UTF-8").lines().skip(1).map(str::to_owned).collect()
     }
 
     #[test]
     fn a_line_per_status() {
-        let found = Found {
-            t: 1.5e-9_f64,
-            u: 0.25,
-            v: 1.0,
-            patch: 31,
-            normal: None,
-        };
+        let found = Found { t: 1.5e-9_f64, u: 0.25, v: 1.0, patch: 31, normal: None };
         let answers = [
-            Answer::Hit(Found {
-                normal: Some([-0.0, 1e300, 0.1]),
-                ..found
-            }),
+            Answer::Hit(Found { normal: Some([-0.0, 1e300, 0.1]), ..found }),
             Answer::Graze(found),
             Answer::Miss,
-            Answer::GaveUp {
-                limit: "clip-steps",
-                best: None,
-            },
-            Answer::GaveUp {
-                limit: "voxels",
-                best: Some(found),
-            },
+            Answer::GaveUp { limit: "clip-steps", best: None },
+            Answer::GaveUp { limit: "voxels", best: Some(found) },
             Answer::Invalid,
         ];
         let expected = [
@@ -220,9 +190,7 @@ mod tests {
     #[test]
     fn an_empty_batch_has_a_header() {
         let mut text = Vec::new();
-        Answers::new(&mut text)
-            .and_then(Answers::finish)
-            .expect("to memory");
+        Answers::new(&mut text).and_then(Answers::finish).expect("to memory");
         assert_eq!(text, b"ray,hit,t,u,v,patch,nx,ny,nz,status\n");
     }
 
@@ -237,9 +205,7 @@ mod tests {
                 Ok(())
             }
         }
-        let error = Answers::new(Full)
-            .and_then(Answers::finish)
-            .expect_err("full");
+        let error = Answers::new(Full).and_then(Answers::finish).expect_err("full");
         assert_eq!(error.kind(), io::ErrorKind::StorageFull);
     }
 

@@ -32,10 +32,7 @@ pub struct Light {
 
 impl Default for Light {
     fn default() -> Self {
-        Self {
-            position: None,
-            colour: [1.0; 3],
-        }
+        Self { position: None, colour: [1.0; 3] }
     }
 }
 
@@ -56,13 +53,7 @@ pub struct Material {
 
 impl Default for Material {
     fn default() -> Self {
-        Self {
-            colour: [0.8; 3],
-            ambient: 0.15,
-            diffuse: 0.7,
-            highlight: 0.3,
-            shininess: 40.0,
-        }
+        Self { colour: [0.8; 3], ambient: 0.15, diffuse: 0.7, highlight: 0.3, shininess: 40.0 }
     }
 }
 
@@ -81,14 +72,8 @@ impl ImageTable {
             return Ok(Image::default());
         };
         match size.get_ref()[..] {
-            [width, height]
-                if [width, height]
-                    .iter()
-                    .all(|side| (1..=MAX_SIDE).contains(side)) =>
-            {
-                Ok(Image {
-                    size: [width, height],
-                })
+            [width, height] if [width, height].iter().all(|side| (1..=MAX_SIDE).contains(side)) => {
+                Ok(Image { size: [width, height] })
             }
             _ => Err(check.source.refuse(
                 size.span(),

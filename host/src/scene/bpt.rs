@@ -99,20 +99,8 @@ impl From<InputError> for Fault {
 
 impl<'a> Reader<'a> {
     fn new(source: &'a SourceText, on_invalid: OnInvalid) -> Self {
-        let bom = if source.text().starts_with('\u{feff}') {
-            '\u{feff}'.len_utf8()
-        } else {
-            0
-        };
-        Self {
-            source,
-            on_invalid,
-            next: Counted {
-                offset: bom,
-                lines: 0,
-            },
-            last: 0..0,
-        }
+        let bom = if source.text().starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+        Self { source, on_invalid, next: Counted { offset: bom, lines: 0 }, last: 0..0 }
     }
 
     fn file(mut self) -> Result<PatchFile, InputError> {
@@ -124,11 +112,8 @@ impl<'a> Reader<'a> {
             };
             match self.surface(number, &header) {
                 Ok(surface) => file.model.surfaces.push(surface),
-                Err(Fault::Value(InputError::Refused(why)))
-                    if self.on_invalid == OnInvalid::Skip =>
-                {
-                    file.skipped
-                        .push(Skipped::from_refusal("surface", number, &why));
+                Err(Fault::Value(InputError::Refused(why))) if self.on_invalid == OnInvalid::Skip => {
+                    file.skipped.push(Skipped::from_refusal("surface", number, &why));
                 }
                 Err(Fault::Value(error) | Fault::Structure(error)) => return Err(error),
             }
@@ -144,8 +129,7 @@ impl<'a> Reader<'a> {
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> InputError {
-        self.source
-            .refuse_near(self.next, span, message, label, help)
+        self.source.refuse_near(self.next, span, message, label, help)
     }
 
     /// The first line: the number of surfaces. Nothing is allocated by it, as it may lie.
@@ -222,9 +206,7 @@ impl<'a> Reader<'a> {
                 )));
             }
         }
-        let expected = degree_u
-            .saturating_add(1)
-            .saturating_mul(degree_v.saturating_add(1));
+        let expected = degree_u.saturating_add(1).saturating_mul(degree_v.saturating_add(1));
         let whole = format!("{expected} points of degrees {} {}", m.text, n.text);
         let mut points = Vec::new();
         let mut arity = None;
@@ -294,14 +276,11 @@ impl<'a> Reader<'a> {
                 format!("{point} has {found} numbers, those before it {expected}"),
                 "write every point of a surface as `x y z`, or every one as `x y z w` (w = 1 where there is no weight)",
             ),
-            (found, _) => (
-                format!("{point} has {found} numbers"),
-                "write a point as `x y z`, or `x y z w` with a weight",
-            ),
+            (found, _) => {
+                (format!("{point} has {found} numbers"), "write a point as `x y z`, or `x y z w` with a weight")
+            }
         };
-        Err(self
-            .source
-            .refuse(line_span(line), message, "not a point as expected", help))
+        Err(self.source.refuse(line_span(line), message, "not a point as expected", help))
     }
 
     fn point(&self, number: usize, index: u64, line: &[Token]) -> Result<[f64; 4], Fault> {
@@ -313,10 +292,7 @@ impl<'a> Reader<'a> {
             let Ok(value) = token.text.parse::<f64>() else {
                 return Err(Fault::Structure(self.refuse(
                     token.span(),
-                    format!(
-                        "{name} {of} is not a number: `{}`",
-                        token.text.chars().take(40).collect::<String>()
-                    ),
+                    format!("{name} {of} is not a number: `{}`", token.text.chars().take(40).collect::<String>()),
                     "not a number",
                     "write a decimal number, such as `-1.5` or `2e-3`",
                 )));
@@ -324,20 +300,11 @@ impl<'a> Reader<'a> {
             let wrong = if value.is_nan() {
                 Some(("is not a number (NaN)", "write a finite number"))
             } else if value.is_infinite() && token.text.contains(|c: char| c.is_ascii_digit()) {
-                Some((
-                    "is too large for a 64-bit floating point number",
-                    "use smaller units: at most 1.7e308",
-                ))
+                Some(("is too large for a 64-bit floating point number", "use smaller units: at most 1.7e308"))
             } else if value.is_infinite() {
-                Some((
-                    "is infinite",
-                    "write a finite number; a point at infinity needs another form of the surface",
-                ))
+                Some(("is infinite", "write a finite number; a point at infinity needs another form of the surface"))
             } else if slot == 3 && value <= 0.0 {
-                Some((
-                    "is not above 0",
-                    "write a weight above 0; it is not multiplied into x, y and z",
-                ))
+                Some(("is not above 0", "write a weight above 0; it is not multiplied into x, y and z"))
             } else {
                 None
             };
@@ -356,22 +323,14 @@ impl<'a> Reader<'a> {
         // Ends with the text, of which every round takes a line.
         while self.next.offset < text.len() {
             let start = self.next.offset;
-            let end = text[start..]
-                .find('\n')
-                .map_or(text.len(), |newline| start + newline);
+            let end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
             // The last line may have no end.
             let ended = usize::from(end < text.len());
-            self.next = Counted {
-                offset: end + ended,
-                lines: self.next.lines + ended,
-            };
+            self.next = Counted { offset: end + ended, lines: self.next.lines + ended };
             let content = text[start..end].split('#').next().unwrap_or("");
             let line: Line = content
                 .split_ascii_whitespace()
-                .map(|word| Token {
-                    text: word,
-                    start: start + offset_in(content, word),
-                })
+                .map(|word| Token { text: word, start: start + offset_in(content, word) })
                 .collect();
             if !line.is_empty() {
                 self.last = line_span(&line);

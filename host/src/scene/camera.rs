@@ -58,37 +58,15 @@ impl Camera {
     /// The rays of an image of `size`: width and height in pixels, each at least 1.
     pub fn view(&self, size: [u32; 2]) -> View {
         match *self {
-            Self::Vectors {
-                eye,
-                forward,
-                right,
-                up,
-            } => View {
-                eye,
-                forward,
-                right,
-                up,
-                size,
-            },
-            Self::LookAt {
-                eye,
-                look_at,
-                up,
-                fov,
-            } => {
+            Self::Vectors { eye, forward, right, up } => View { eye, forward, right, up, size },
+            Self::LookAt { eye, look_at, up, fov } => {
                 let forward = unit([0, 1, 2].map(|axis| look_at[axis] - eye[axis]));
                 let right = unit(cross(forward, unit(up)));
                 let upward = cross(right, forward);
                 // The top edge of the image, half a pixel above the top row, has sy = H / S.
                 let [width, height] = size.map(f64::from);
                 let half = (fov.to_radians() / 2.0).tan() * width.max(height) / height;
-                View {
-                    eye,
-                    forward,
-                    right: right.map(|x| half * x),
-                    up: upward.map(|x| half * x),
-                    size,
-                }
+                View { eye, forward, right: right.map(|x| half * x), up: upward.map(|x| half * x), size }
             }
         }
     }
@@ -118,32 +96,16 @@ pub(super) struct CameraTable {
 }
 
 /// The two ways, for messages.
-const WAYS: &str =
-    "give `eye`, `look_at` and perhaps `up` and `fov`; or `eye`, `forward`, `right` and `up`";
+const WAYS: &str = "give `eye`, `look_at` and perhaps `up` and `fov`; or `eye`, `forward`, `right` and `up`";
 
 impl CameraTable {
     pub(super) fn check(table: &Spanned<Self>, check: &Check) -> Result<Camera, InputError> {
-        let Self {
-            eye,
-            forward,
-            right,
-            up,
-            look_at,
-            fov,
-        } = table.get_ref();
-        let vectors = forward
-            .as_ref()
-            .or(right.as_ref())
-            .map(|vector| vector.span());
-        let looking = look_at
-            .as_ref()
-            .map(|point| point.span())
-            .or(fov.as_ref().map(|fov| fov.span()));
+        let Self { eye, forward, right, up, look_at, fov } = table.get_ref();
+        let vectors = forward.as_ref().or(right.as_ref()).map(|vector| vector.span());
+        let looking = look_at.as_ref().map(|point| point.span()).or(fov.as_ref().map(|fov| fov.span()));
         let missing = |name: &str| {
             let message = format!("the camera lacks `{name}`");
-            check
-                .source
-                .refuse(table.span(), message, "this camera", WAYS)
+            check.source.refuse(table.span(), message, "this camera", WAYS)
         };
         let eye = check.triple("`eye`", eye.as_ref().ok_or_else(|| missing("eye"))?)?;
         match (vectors, looking) {
@@ -216,11 +178,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The vector divided by its length; NaN for a zero vector.
@@ -235,39 +193,22 @@ mod tests {
 
     #[test]
     fn look_at_spans_the_angle() {
-        let camera = Camera::LookAt {
-            eye: [0.0, -5.0, 1.0],
-            look_at: [0.0, 0.0, 1.0],
-            up: [0.0, 1.0, 3.0],
-            fov: 90.0,
-        };
+        let camera = Camera::LookAt { eye: [0.0, -5.0, 1.0], look_at: [0.0, 0.0, 1.0], up: [0.0, 1.0, 3.0], fov: 90.0 };
         for size in [[200, 100], [100, 200], [64, 64]] {
             let view = camera.view(size);
             // From the centre of the image, half the height in pixels is one unit at distance 1.
             let pixel = 2.0 / f64::from(size[1]);
             let corner = view.direction(0, 0);
-            let expected = [
-                -(f64::from(size[0]) - 1.0) / 2.0 * pixel,
-                1.0,
-                (f64::from(size[1]) - 1.0) / 2.0 * pixel,
-            ];
+            let expected = [-(f64::from(size[0]) - 1.0) / 2.0 * pixel, 1.0, (f64::from(size[1]) - 1.0) / 2.0 * pixel];
             for axis in 0..3 {
-                assert!(
-                    (corner[axis] - expected[axis]).abs() < 1e-14,
-                    "{corner:?} {expected:?}"
-                );
+                assert!((corner[axis] - expected[axis]).abs() < 1e-14, "{corner:?} {expected:?}");
             }
         }
     }
 
     #[test]
     fn the_middle_of_an_odd_image_is_forward() {
-        let camera = Camera::Vectors {
-            eye: [0.0; 3],
-            forward: [1.0, 2.0, 3.0],
-            right: [1.0; 3],
-            up: [0.0, 0.0, 7.0],
-        };
+        let camera = Camera::Vectors { eye: [0.0; 3], forward: [1.0, 2.0, 3.0], right: [1.0; 3], up: [0.0, 0.0, 7.0] };
         assert_eq!(camera.view([3, 5]).direction(1, 2), [1.0, 2.0, 3.0]);
         assert_eq!(camera.view([1, 1]).direction(0, 0), [1.0, 2.0, 3.0]);
     }

@@ -11,11 +11,7 @@ pub(super) struct Check<'a> {
 
 impl Check<'_> {
     /// Three finite numbers.
-    pub(super) fn triple(
-        &self,
-        what: &str,
-        list: &Spanned<Vec<f64>>,
-    ) -> Result<[f64; 3], InputError> {
+    pub(super) fn triple(&self, what: &str, list: &Spanned<Vec<f64>>) -> Result<[f64; 3], InputError> {
         let Ok(triple) = <[f64; 3]>::try_from(list.get_ref().as_slice()) else {
             let found = list.get_ref().len();
             return Err(self.source.refuse(
@@ -37,11 +33,7 @@ impl Check<'_> {
     }
 
     /// Red, green and blue, each 0 to 1.
-    pub(super) fn colour(
-        &self,
-        what: &str,
-        list: &Spanned<Vec<f64>>,
-    ) -> Result<[f64; 3], InputError> {
+    pub(super) fn colour(&self, what: &str, list: &Spanned<Vec<f64>>) -> Result<[f64; 3], InputError> {
         let colour = self.triple(what, list)?;
         if colour.iter().all(|part| (0.0..=1.0).contains(part)) {
             return Ok(colour);
@@ -61,12 +53,7 @@ impl Check<'_> {
             return Ok(value);
         }
         let help = "write a finite number of at least 0";
-        Err(self.source.refuse(
-            number.span(),
-            format!("{what} is {value}"),
-            "out of range",
-            help,
-        ))
+        Err(self.source.refuse(number.span(), format!("{what} is {value}"), "out of range", help))
     }
 
     /// A finite number above 0.
@@ -76,23 +63,13 @@ impl Check<'_> {
             return Ok(value);
         }
         let help = "write a finite number above 0";
-        Err(self.source.refuse(
-            number.span(),
-            format!("{what} is {value}"),
-            "out of range",
-            help,
-        ))
+        Err(self.source.refuse(number.span(), format!("{what} is {value}"), "out of range", help))
     }
 
     /// A whole number of at least 1.
     pub(super) fn count(&self, what: &str, number: &Spanned<u32>) -> Result<u32, InputError> {
         match *number.get_ref() {
-            0 => Err(self.source.refuse(
-                number.span(),
-                format!("{what} is 0"),
-                "too few",
-                "write at least 1",
-            )),
+            0 => Err(self.source.refuse(number.span(), format!("{what} is 0"), "too few", "write at least 1")),
             count => Ok(count),
         }
     }

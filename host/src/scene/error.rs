@@ -39,11 +39,7 @@ impl InputError {
             io::ErrorKind::IsADirectory => "name a file in this folder",
             _ => "check that the path names a readable file",
         };
-        Self::Unreadable {
-            name: path.display().to_string(),
-            reason,
-            help: help.to_owned(),
-        }
+        Self::Unreadable { name: path.display().to_string(), reason, help: help.to_owned() }
     }
 
     /// Where the error is, for a refusal.
@@ -81,21 +77,10 @@ impl Refusal {
         help: String,
     ) -> Box<Self> {
         let (line, column) = excerpt.place(span.start);
-        let place = Place {
-            file: name.to_owned(),
-            line,
-            column,
-        };
+        let place = Place { file: name.to_owned(), line, column };
         let shown = excerpt.shown(span);
         let excerpt = NamedSource::new(name, excerpt);
-        Box::new(Self {
-            message,
-            label,
-            help,
-            place,
-            excerpt,
-            span: shown.into(),
-        })
+        Box::new(Self { message, label, help, place, excerpt, span: shown.into() })
     }
 }
 
@@ -143,22 +128,13 @@ pub struct Skipped {
 impl Skipped {
     /// What was left out, where it would otherwise have been refused with `error`.
     pub(super) fn from_refusal(kind: &'static str, number: usize, refusal: &Refusal) -> Self {
-        Self {
-            kind,
-            number,
-            place: refusal.place.clone(),
-            reason: refusal.message.clone(),
-        }
+        Self { kind, number, place: refusal.place.clone(), reason: refusal.message.clone() }
     }
 }
 
 impl fmt::Display for Skipped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} {} left out ({}): {}",
-            self.kind, self.number, self.place, self.reason
-        )
+        write!(f, "{} {} left out ({}): {}", self.kind, self.number, self.place, self.reason)
     }
 }
 
@@ -173,25 +149,17 @@ pub(crate) mod tests {
     pub(crate) fn rendered(error: &InputError) -> String {
         let mut report = String::new();
         let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor());
-        handler
-            .with_width(200)
-            .render_report(&mut report, error)
-            .expect("rendering to a string");
+        handler.with_width(200).render_report(&mut report, error).expect("rendering to a string");
         report
     }
 
     /// Asserts the place as `file:line:column`, that the message holds `message`, and that the report shows the place.
     pub(crate) fn assert_refused<T>(result: Result<T, InputError>, place: &str, message: &str) {
-        let Err(error) = result else {
-            panic!("not refused: {message}")
-        };
+        let Err(error) = result else { panic!("not refused: {message}") };
         let report = rendered(&error);
         let found = error.place().expect("a refusal").to_string();
         assert_eq!(found, place, "{report}");
-        assert!(
-            error.to_string().contains(message),
-            "`{error}` lacks `{message}`"
-        );
+        assert!(error.to_string().contains(message), "`{error}` lacks `{message}`");
         assert!(report.contains(&format!("[{place}]")), "{report}");
         assert!(report.contains("help: "), "{report}");
     }
@@ -202,9 +170,7 @@ pub(crate) mod tests {
 
     #[test]
     fn report_shows_place_source_and_help() {
-        let Err(error) = refuse("one\ntwo three\nfour\n", 8..13) else {
-            unreachable!()
-        };
+        let Err(error) = refuse("one\ntwo three\nfour\n", 8..13) else { unreachable!() };
         let report = rendered(&error);
         assert!(report.contains("[f:2:5]"), "{report}");
         assert!(report.contains("2 │ two three"), "{report}");
@@ -227,11 +193,7 @@ pub(crate) mod tests {
 
     #[test]
     fn a_long_line_is_cut() {
-        let text = format!(
-            "first\n{}é!{}\nlast\n",
-            "é".repeat(5000),
-            "x".repeat(100_000)
-        );
+        let text = format!("first\n{}é!{}\nlast\n", "é".repeat(5000), "x".repeat(100_000));
         let at = text.find('!').expect("it is there");
         let result = refuse(&text, at..at + 90_000);
         let report = rendered(result.as_ref().expect_err("refused"));
@@ -242,12 +204,7 @@ pub(crate) mod tests {
     #[test]
     fn a_missing_file_is_named() {
         let error = SourceText::read(Path::new("no/such/file.bpt")).expect_err("missing");
-        assert!(
-            error
-                .to_string()
-                .starts_with("cannot read `no/such/file.bpt`: "),
-            "{error}"
-        );
+        assert!(error.to_string().starts_with("cannot read `no/such/file.bpt`: "), "{error}");
         assert!(error.place().is_none());
     }
 }

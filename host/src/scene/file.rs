@@ -53,9 +53,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::appearance::{
-    BACKGROUND, Image, ImageTable, Light, LightTable, Material, MaterialTable,
-};
+use super::appearance::{BACKGROUND, Image, ImageTable, Light, LightTable, Material, MaterialTable};
 use super::bpt;
 use super::camera::{Camera, CameraTable};
 use super::check::Check;
@@ -120,9 +118,7 @@ pub struct SceneFile {
 impl Scene {
     /// The file that holds the surface with this index in the model.
     pub fn file_of(&self, index: usize) -> Option<&SceneFile> {
-        self.files
-            .iter()
-            .find(|file| file.surfaces.contains(&index))
+        self.files.iter().find(|file| file.surfaces.contains(&index))
     }
 }
 
@@ -158,18 +154,9 @@ pub(super) fn load(
         })?;
         let first = model.surfaces.len();
         model.surfaces.append(&mut file.model.surfaces);
-        files.push(SceneFile {
-            path,
-            surfaces: first..model.surfaces.len(),
-            skipped: file.skipped,
-        });
+        files.push(SceneFile { path, surfaces: first..model.surfaces.len(), skipped: file.skipped });
     }
-    Ok(Scene {
-        source,
-        description,
-        model,
-        files,
-    })
+    Ok(Scene { source, description, model, files })
 }
 
 /// Reads `text`, a whole scene file, without the files that it names; `name` stands for its path in errors.
@@ -199,17 +186,10 @@ struct SurfaceTable {
 }
 
 fn describe(source: &SourceText) -> Result<Description, InputError> {
-    let table: DescriptionTable =
-        toml::from_str(source.text()).map_err(|error| refusal(source, &error))?;
+    let table: DescriptionTable = toml::from_str(source.text()).map_err(|error| refusal(source, &error))?;
     let check = Check { source };
-    let missing = |what: &str, help: &str| {
-        source.refuse(
-            0..0,
-            format!("the scene has no {what}"),
-            "in this file",
-            help,
-        )
-    };
+    let missing =
+        |what: &str, help: &str| source.refuse(0..0, format!("the scene has no {what}"), "in this file", help);
     let surfaces = match table.surfaces {
         Some(list) if !list.get_ref().is_empty() => list.into_inner(),
         _ => {
@@ -222,29 +202,16 @@ fn describe(source: &SourceText) -> Result<Description, InputError> {
         return Err(missing("camera", help));
     };
     Ok(Description {
-        image: table
-            .image
-            .map_or(Ok(Image::default()), |image| image.check(&check))?,
+        image: table.image.map_or(Ok(Image::default()), |image| image.check(&check))?,
         camera: CameraTable::check(camera, &check)?,
-        light: table
-            .light
-            .map_or(Ok(Light::default()), |light| light.check(&check))?,
-        material: table
-            .material
-            .map_or(Ok(Material::default()), |material| material.check(&check))?,
-        background: table.background.map_or(Ok(BACKGROUND), |colour| {
-            check.colour("`background`", &colour)
-        })?,
+        light: table.light.map_or(Ok(Light::default()), |light| light.check(&check))?,
+        material: table.material.map_or(Ok(Material::default()), |material| material.check(&check))?,
+        background: table.background.map_or(Ok(BACKGROUND), |colour| check.colour("`background`", &colour))?,
         surfaces: surfaces
             .into_iter()
-            .map(|entry| SurfaceSource {
-                span: entry.file.span(),
-                file: entry.file.into_inner().into(),
-            })
+            .map(|entry| SurfaceSource { span: entry.file.span(), file: entry.file.into_inner().into() })
             .collect(),
-        trace: table
-            .trace
-            .map_or(Ok(TraceSettings::default()), |trace| trace.check(&check))?,
+        trace: table.trace.map_or(Ok(TraceSettings::default()), |trace| trace.check(&check))?,
     })
 }
 
@@ -255,26 +222,13 @@ fn refusal(source: &SourceText, error: &toml::de::Error) -> InputError {
     let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let (message, label, help) = match &names[..] {
         [unknown, known @ ..] if message.starts_with("unknown ") && !known.is_empty() => (
-            format!(
-                "there is no `{unknown}` here{}",
-                did_you_mean(unknown, known).unwrap_or_default()
-            ),
+            format!("there is no `{unknown}` here{}", did_you_mean(unknown, known).unwrap_or_default()),
             "unknown",
             format!("write one of {}", known.join(", ")),
         ),
-        _ if message.starts_with("missing field") => {
-            (message.clone(), "in here", "add the field".to_owned())
-        }
-        _ if message.starts_with("invalid") => (
-            message.clone(),
-            "not as expected",
-            "correct this value".to_owned(),
-        ),
-        _ => (
-            message.clone(),
-            "here",
-            "the file is TOML: `name = value` and `[table]`; strings in quotes".to_owned(),
-        ),
+        _ if message.starts_with("missing field") => (message.clone(), "in here", "add the field".to_owned()),
+        _ if message.starts_with("invalid") => (message.clone(), "not as expected", "correct this value".to_owned()),
+        _ => (message.clone(), "here", "the file is TOML: `name = value` and `[table]`; strings in quotes".to_owned()),
     };
     source.refuse(error.span().unwrap_or(0..0), message, label, help)
 }

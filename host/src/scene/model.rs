@@ -31,10 +31,7 @@ impl Model {
     pub fn control_box(&self) -> Option<ControlBox> {
         let mut points = self.surfaces.iter().flat_map(|surface| &surface.points);
         let &[x, y, z, _] = points.next()?;
-        let mut control_box = ControlBox {
-            min: [x, y, z],
-            max: [x, y, z],
-        };
+        let mut control_box = ControlBox { min: [x, y, z], max: [x, y, z] };
         for point in points {
             for axis in 0..3 {
                 control_box.min[axis] = control_box.min[axis].min(point[axis]);

@@ -8,10 +8,7 @@ const ALIKE: f64 = 0.5;
 pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let name = name.to_lowercase();
     let alike = |known: &str| strsim::normalized_damerau_levenshtein(&name, &known.to_lowercase());
-    let best = known
-        .iter()
-        .copied()
-        .max_by(|a, b| alike(a).total_cmp(&alike(b)))?;
+    let best = known.iter().copied().max_by(|a, b| alike(a).total_cmp(&alike(b)))?;
     (alike(best) >= ALIKE).then_some(best)
 }
 
@@ -26,16 +23,7 @@ mod tests {
 
     #[test]
     fn slips_are_caught_and_strangers_are_not() {
-        let known = [
-            "eye",
-            "look_at",
-            "forward",
-            "colour",
-            "newton",
-            "newton-coherent",
-            "tmin",
-            "tmax",
-        ];
+        let known = ["eye", "look_at", "forward", "colour", "newton", "newton-coherent", "tmin", "tmax"];
         for (slip, meant) in [
             ("lookat", "look_at"),
             ("foward", "forward"),

@@ -63,10 +63,7 @@ pub fn read(path: &Path, on_invalid: OnInvalid) -> Result<RayBatch, InputError> 
     let name = path.display().to_string();
     let whole = |input: &mut dyn Read| {
         let mut bytes = Vec::new();
-        input
-            .read_to_end(&mut bytes)
-            .map(|_| Cursor::new(bytes))
-            .map_err(unreadable)
+        input.read_to_end(&mut bytes).map(|_| Cursor::new(bytes)).map_err(unreadable)
     };
     if path == Path::new("-") {
         return Reader::new(&name, whole(&mut io::stdin().lock())?, on_invalid).batch();
@@ -111,15 +108,8 @@ struct Reader<'a, R> {
 impl<'a, R: Read + Seek> Reader<'a, R> {
     fn new(name: &'a str, input: R, on_invalid: OnInvalid) -> Self {
         // The header is read like any line, and lines of any length are let through, so that all messages are ours.
-        let input = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .from_reader(input);
-        Self {
-            name,
-            input,
-            on_invalid,
-        }
+        let input = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(input);
+        Self { name, input, on_invalid }
     }
 
     fn batch(mut self) -> Result<RayBatch, InputError> {
@@ -149,8 +139,7 @@ impl<'a, R: Read + Seek> Reader<'a, R> {
                 }
                 if batch.first_invalid.is_none() {
                     let why = self.refusal(&record, fault);
-                    batch.first_invalid =
-                        Some(Skipped::from_refusal("ray", batch.rays.len(), &why));
+                    batch.first_invalid = Some(Skipped::from_refusal("ray", batch.rays.len(), &why));
                 }
                 ray.valid = false;
                 batch.invalid += 1;
@@ -162,9 +151,7 @@ impl<'a, R: Read + Seek> Reader<'a, R> {
 
     /// Reads the next line that is not blank; whether there was one.
     fn next(&mut self, record: &mut StringRecord) -> Result<bool, InputError> {
-        self.input
-            .read_record(record)
-            .map_err(|error| self.broken(error))
+        self.input.read_record(record).map_err(|error| self.broken(error))
     }
 
     /// The error for a line that is no CSV, or that could not be read.
@@ -182,18 +169,14 @@ impl<'a, R: Read + Seek> Reader<'a, R> {
                 };
                 self.refusal(&record, fault).into()
             }
-            (kind, None) => {
-                InputError::unreadable(Path::new(self.name), io::Error::other(format!("{kind:?}")))
-            }
+            (kind, None) => InputError::unreadable(Path::new(self.name), io::Error::other(format!("{kind:?}"))),
         }
     }
 
     /// The refusal of the file because of the line of `record`. The line is read again from the file, since the record has
     /// lost spaces and quotes.
     fn refusal(&mut self, record: &StringRecord, fault: Fault) -> Box<Refusal> {
-        let (start, line) = record
-            .position()
-            .map_or((0, 1), |at| (at.byte() as usize, at.line() as usize));
+        let (start, line) = record.position().map_or((0, 1), |at| (at.byte() as usize, at.line() as usize));
         // A line that cannot be read again is shown empty; the message and the place still stand.
         let (blank, bytes) = self.reread(start as u64).unwrap_or_default();
         let text = String::from_utf8_lossy(&bytes);
@@ -204,14 +187,7 @@ impl<'a, R: Read + Seek> Reader<'a, R> {
         };
         let span = start + span.start..start + span.end;
         let excerpt = Excerpt::of_line(text, line + blank, start, span.clone());
-        Refusal::new(
-            self.name,
-            excerpt,
-            span,
-            fault.message,
-            "here".to_owned(),
-            fault.help,
-        )
+        Refusal::new(self.name, excerpt, span, fault.message, "here".to_owned(), fault.help)
     }
 
     /// The first line that is not blank from byte `start` of the file, and how many lines were passed over to get there.
@@ -223,9 +199,7 @@ impl<'a, R: Read + Seek> Reader<'a, R> {
         let mut lines = BufReader::new(input.by_ref().take(LONGEST));
         let (mut blank, mut line) = (0, Vec::new());
         // Ends with the bytes that may be taken.
-        while lines.read_until(b'\n', &mut line)? > 0
-            && line.iter().all(|byte| b"\r\n".contains(byte))
-        {
+        while lines.read_until(b'\n', &mut line)? > 0 && line.iter().all(|byte| b"\r\n".contains(byte)) {
             blank += 1;
             line.clear();
         }
@@ -265,8 +239,7 @@ fn ray(record: &StringRecord, columns: &Columns, fields: usize) -> Result<RayLin
         return Err(Fault {
             at: At::WholeLine,
             message: format!("the line has {} fields, the header {fields}", record.len()),
-            help: "write a number for every column of the header, with commas between them"
-                .to_owned(),
+            help: "write a number for every column of the header, with commas between them".to_owned(),
         });
     }
     let number = |column: usize, default: f64| match columns[column] {
@@ -282,9 +255,7 @@ fn ray(record: &StringRecord, columns: &Columns, fields: usize) -> Result<RayLin
         Some(field) => record[field].trim().parse().map_err(|_| Fault {
             at: At::Field(field),
             message: not_a("whole number", &record[field], LINE),
-            help:
-                "number the scan lines from 0, or leave the column out if the file is one scan line"
-                    .to_owned(),
+            help: "number the scan lines from 0, or leave the column out if the file is one scan line".to_owned(),
         })?,
     };
     Ok(RayLine {
@@ -300,48 +271,26 @@ fn ray(record: &StringRecord, columns: &Columns, fields: usize) -> Result<RayLin
 fn not_a(what: &str, field: &str, column: usize) -> String {
     match field.trim() {
         "" => format!("the field of column `{}` is empty", NAMES[column]),
-        text => format!(
-            "`{}` in column `{}` is not a {what}",
-            shown(text),
-            NAMES[column]
-        ),
+        text => format!("`{}` in column `{}` is not a {what}", shown(text), NAMES[column]),
     }
 }
 
 /// Why a ray cannot be traced, if it cannot.
 fn invalid(record: &StringRecord, columns: &Columns, ray: &RayLine) -> Option<Fault> {
     let field = |column: usize| columns[column].map_or(At::WholeLine, At::Field);
-    let fault = |at, message: String, help: &str| {
-        Some(Fault {
-            at,
-            message,
-            help: help.to_owned(),
-        })
-    };
+    let fault = |at, message: String, help: &str| Some(Fault { at, message, help: help.to_owned() });
     let [ox, oy, oz] = ray.origin;
     let [dx, dy, dz] = ray.direction;
-    for (column, value) in [ox, oy, oz, dx, dy, dz, ray.t_min, ray.t_max]
-        .into_iter()
-        .enumerate()
-    {
+    for (column, value) in [ox, oy, oz, dx, dy, dz, ray.t_min, ray.t_max].into_iter().enumerate() {
         let name = NAMES[column];
         // Digits that come to infinity are a number out of range, not the word.
-        let overflow =
-            || columns[column].is_some_and(|at| record[at].contains(|c: char| c.is_ascii_digit()));
+        let overflow = || columns[column].is_some_and(|at| record[at].contains(|c: char| c.is_ascii_digit()));
         if value.is_nan() {
-            return fault(
-                field(column),
-                format!("`{name}` is not a number (NaN)"),
-                "write a number",
-            );
+            return fault(field(column), format!("`{name}` is not a number (NaN)"), "write a number");
         }
         if value.is_infinite() && overflow() {
             let help = "use smaller units: at most 1.7e308";
-            return fault(
-                field(column),
-                format!("`{name}` is too large for a 64-bit floating point number"),
-                help,
-            );
+            return fault(field(column), format!("`{name}` is too large for a 64-bit floating point number"), help);
         }
         if value.is_infinite() && column != T_MAX {
             return fault(
@@ -352,22 +301,11 @@ fn invalid(record: &StringRecord, columns: &Columns, ray: &RayLine) -> Option<Fa
         }
     }
     if ray.direction == [0.0; 3] {
-        return fault(
-            At::WholeLine,
-            "the direction is zero".to_owned(),
-            "give dx, dy or dz a value other than 0",
-        );
+        return fault(At::WholeLine, "the direction is zero".to_owned(), "give dx, dy or dz a value other than 0");
     }
     if ray.t_min > ray.t_max {
-        let at = if columns[T_MAX].is_some() {
-            field(T_MAX)
-        } else {
-            field(T_MIN)
-        };
-        let message = format!(
-            "`tmin` is {} and above `tmax`, which is {}",
-            ray.t_min, ray.t_max
-        );
+        let at = if columns[T_MAX].is_some() { field(T_MAX) } else { field(T_MIN) };
+        let message = format!("`tmin` is {} and above `tmax`, which is {}", ray.t_min, ray.t_max);
         return fault(at, message, "write a range of t with `tmin` at most `tmax`");
     }
     None

@@ -18,10 +18,7 @@ pub struct SourceText {
 impl SourceText {
     /// A text that is in memory; `name` stands for the file's path in errors.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            text: text.into(),
-        }
+        Self { name: name.into(), text: text.into() }
     }
 
     /// Reads the file at `path`; `-` is standard input.
@@ -86,15 +83,7 @@ impl SourceText {
         help: impl Into<String>,
     ) -> InputError {
         let excerpt = Excerpt::of(&self.text, span.clone(), counted);
-        Refusal::new(
-            &self.name,
-            excerpt,
-            span,
-            message.into(),
-            label.into(),
-            help.into(),
-        )
-        .into()
+        Refusal::new(&self.name, excerpt, span, message.into(), label.into(), help.into()).into()
     }
 }
 
@@ -131,8 +120,7 @@ impl Excerpt {
         let start = char_start(text, span.start);
         let end = char_start(text, span.end.clamp(start, start + MARGIN));
         let this_line = line_start(text, start);
-        let first = char_start(text, start.saturating_sub(MARGIN))
-            .max(line_start(text, this_line.saturating_sub(1)));
+        let first = char_start(text, start.saturating_sub(MARGIN)).max(line_start(text, this_line.saturating_sub(1)));
         let mut next_lines = text[end..].match_indices('\n').map(|(at, _)| end + at + 1);
         let last = next_lines.nth(1).unwrap_or(text.len());
         let last = last.min(char_start(text, end + MARGIN));
@@ -165,10 +153,7 @@ impl Excerpt {
         let local = char_start(&self.text, offset.saturating_sub(self.offset));
         let start = line_start(&self.text, local);
         let before = if start == 0 { self.column } else { 0 };
-        (
-            self.line + newlines(&self.text.as_bytes()[..local]) + 1,
-            before + self.text[start..local].chars().count() + 1,
-        )
+        (self.line + newlines(&self.text.as_bytes()[..local]) + 1, before + self.text[start..local].chars().count() + 1)
     }
 
     /// The part of `span`, bytes of the file, that the excerpt shows.
@@ -186,10 +171,7 @@ impl SourceCode for Excerpt {
         lines_before: usize,
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let local = span
-            .offset()
-            .checked_sub(self.offset)
-            .ok_or(MietteError::OutOfBounds)?;
+        let local = span.offset().checked_sub(self.offset).ok_or(MietteError::OutOfBounds)?;
         let local = SourceSpan::from((local, span.len()));
         let contents = self.text.read_span(&local, lines_before, lines_after)?;
         let offset = self.offset + contents.span().offset();
@@ -215,8 +197,5 @@ fn line_start(text: &str, at: usize) -> usize {
 /// The start of the character that holds the byte `at`, or the end of the text.
 fn char_start(text: &str, at: usize) -> usize {
     let at = at.min(text.len());
-    (0..=at)
-        .rev()
-        .find(|&start| text.is_char_boundary(start))
-        .unwrap_or(0)
+    (0..=at).rev().find(|&start| text.is_char_boundary(start)).unwrap_or(0)
 }

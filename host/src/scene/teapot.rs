@@ -51,9 +51,7 @@ mod tests {
 
     fn evaluate(surface: &ModelSurface, u: f64, v: f64, axis: usize) -> f64 {
         let (bu, bv) = (bernstein(u), bernstein(v));
-        (0..16)
-            .map(|k| bu[k / 4] * bv[k % 4] * surface.points[k][axis])
-            .sum()
+        (0..16).map(|k| bu[k / 4] * bv[k % 4] * surface.points[k][axis]).sum()
     }
 
     /// The largest of `sign` × coordinate on the surface: the best of a grid, refined by ever smaller grids around it.
@@ -82,10 +80,7 @@ mod tests {
         let model = teapot();
         assert_eq!(model.surfaces.len(), 32);
         for (number, surface) in model.surfaces.iter().enumerate() {
-            assert_eq!(
-                (surface.number, surface.degree_u, surface.degree_v),
-                (number, 3, 3)
-            );
+            assert_eq!((surface.number, surface.degree_u, surface.degree_v), (number, 3, 3));
             assert!(!surface.rational);
         }
     }
@@ -102,54 +97,30 @@ mod tests {
     fn box_of_the_surface() {
         let model = teapot();
         let most = |axis: usize, sign: f64| {
-            let extremes = model
-                .surfaces
-                .iter()
-                .map(|surface| extreme(surface, axis, sign));
+            let extremes = model.surfaces.iter().map(|surface| extreme(surface, axis, sign));
             sign * extremes.fold(f64::NEG_INFINITY, f64::max)
         };
-        let own = ControlBox {
-            min: [0, 1, 2].map(|axis| most(axis, -1.0)),
-            max: [0, 1, 2].map(|axis| most(axis, 1.0)),
-        };
+        let own =
+            ControlBox { min: [0, 1, 2].map(|axis| most(axis, -1.0)), max: [0, 1, 2].map(|axis| most(axis, 1.0)) };
         for (found, stated) in own.min.iter().zip([-3.0, -2.0, 0.0]) {
             assert!((found - stated).abs() < 1e-12, "{own:?}");
         }
-        for (found, (stated, digits)) in
-            own.max
-                .iter()
-                .zip([(3.434075, 5e-7), (2.0, 1e-12), (3.15, 1e-12)])
-        {
+        for (found, (stated, digits)) in own.max.iter().zip([(3.434075, 5e-7), (2.0, 1e-12), (3.15, 1e-12)]) {
             assert!((found - stated).abs() < digits, "{own:?}");
         }
         // The spout's tip is the cubic with x = 3.3, 3.525, 3.45, 3.2, highest where 0.225 - 0.6 t + 0.125 t² = 0.
         let t = (0.6 - (0.36_f64 - 0.1125).sqrt()) / 0.25;
-        let tip: f64 = bernstein(t)
-            .iter()
-            .zip([3.3, 3.525, 3.45, 3.2])
-            .map(|(b, x)| b * x)
-            .sum();
+        let tip: f64 = bernstein(t).iter().zip([3.3, 3.525, 3.45, 3.2]).map(|(b, x)| b * x).sum();
         assert!((own.max[0] - tip).abs() < 1e-12, "{own:?}");
-        assert!(
-            (own.diagonal() - 8.2048657954).abs() < 5e-11,
-            "{}",
-            own.diagonal()
-        );
+        assert!((own.diagonal() - 8.2048657954).abs() < 5e-11, "{}", own.diagonal());
     }
 
     #[test]
     fn common_view_is_exact_in_f32() {
         let scene = common_scene().expect("the fixtures are valid");
-        let path = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../fixtures/scenes/teapot-common.toml"
-        );
-        let from_disk =
-            file::read(path.as_ref(), OnInvalid::Refuse).expect("the fixtures are valid");
-        assert_eq!(
-            (&scene.description, &scene.model),
-            (&from_disk.description, &from_disk.model)
-        );
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/scenes/teapot-common.toml");
+        let from_disk = file::read(path.as_ref(), OnInvalid::Refuse).expect("the fixtures are valid");
+        assert_eq!((&scene.description, &scene.model), (&from_disk.description, &from_disk.model));
 
         let view = scene.description.camera.view(scene.description.image.size);
         let exact = |vector: [f64; 3]| vector.iter().all(|&x| f64::from(x as f32) == x);
@@ -159,11 +130,8 @@ mod tests {
             let direction = view.direction(px, py);
             let sx = (2.0 * f64::from(px) - 511.0) / 512.0;
             let sy = (511.0 - 2.0 * f64::from(py)) / 512.0;
-            let stated = [
-                24.75 * -9.0 + sx * 68.0 + sy * -24.0,
-                24.75 * 12.0 + sx * 51.0 + sy * 32.0,
-                24.75 * -8.0 + sy * 75.0,
-            ];
+            let stated =
+                [24.75 * -9.0 + sx * 68.0 + sy * -24.0, 24.75 * 12.0 + sx * 51.0 + sy * 32.0, 24.75 * -8.0 + sy * 75.0];
             assert_eq!(direction, stated);
             assert!(exact(direction), "{px} {py}");
         }
@@ -179,16 +147,9 @@ mod tests {
                 [corner(0, 0), corner(1, 0), corner(2, 0), corner(3, 0)],
                 [corner(0, 3), corner(1, 3), corner(2, 3), corner(3, 3)],
             ];
-            edges
-                .iter()
-                .any(|edge| edge.iter().all(|point| point == &edge[0]))
+            edges.iter().any(|edge| edge.iter().all(|point| point == &edge[0]))
         };
-        let numbers: Vec<_> = teapot()
-            .surfaces
-            .iter()
-            .filter(|&s| collapsed(s))
-            .map(|s| s.number)
-            .collect();
+        let numbers: Vec<_> = teapot().surfaces.iter().filter(|&s| collapsed(s)).map(|s| s.number).collect();
         assert_eq!(numbers, [20, 21, 22, 23, 28, 29, 30, 31]);
     }
 }

@@ -93,16 +93,10 @@ pub(super) struct TraceTable {
 impl TraceTable {
     pub(super) fn check(self, check: &Check) -> Result<TraceSettings, InputError> {
         let count = |name: &str, number: &Option<Spanned<u32>>| {
-            number
-                .as_ref()
-                .map(|number| check.count(name, number))
-                .transpose()
+            number.as_ref().map(|number| check.count(name, number)).transpose()
         };
         let positive = |name: &str, number: &Option<Spanned<f64>>| {
-            number
-                .as_ref()
-                .map(|number| check.positive(name, number))
-                .transpose()
+            number.as_ref().map(|number| check.positive(name, number)).transpose()
         };
         Ok(TraceSettings {
             method: self.method,
@@ -116,11 +110,7 @@ impl TraceTable {
             limits: self
                 .limits
                 .into_iter()
-                .map(|(name, value)| LimitSetting {
-                    span: name.span(),
-                    name: name.into_inner(),
-                    value,
-                })
+                .map(|(name, value)| LimitSetting { span: name.span(), name: name.into_inner(), value })
                 .collect(),
         })
     }

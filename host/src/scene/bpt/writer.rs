@@ -12,11 +12,7 @@ pub fn write(model: &Model) -> String {
         let _ = writeln!(text, "{} {}", surface.degree_u, surface.degree_v);
         for &[x, y, z, w] in &surface.points {
             let _ = write!(text, "{} {} {}", Shortest(x), Shortest(y), Shortest(z));
-            let _ = if surface.rational {
-                writeln!(text, " {}", Shortest(w))
-            } else {
-                writeln!(text)
-            };
+            let _ = if surface.rational { writeln!(text, " {}", Shortest(w)) } else { writeln!(text) };
         }
     }
     text

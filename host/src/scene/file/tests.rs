@@ -5,8 +5,7 @@ use proptest::prelude::*;
 use super::super::error::tests::{assert_refused, rendered};
 use super::*;
 
-const LEAST: &str =
-    "surfaces = [{ file = \"a.bpt\" }]\n[camera]\neye = [0, -5, 0]\nlook_at = [0, 0, 0]\n";
+const LEAST: &str = "surfaces = [{ file = \"a.bpt\" }]\n[camera]\neye = [0, -5, 0]\nlook_at = [0, 0, 0]\n";
 
 fn refused(text: &str, place: &str, message: &str) {
     assert_refused(parse("s.toml", text), place, message);
@@ -19,51 +18,25 @@ fn refused_after(lines: &str, place: &str, message: &str) {
 
 /// Refuses a scene whose table `[camera]` holds `lines`, from line 3.
 fn camera_refused(lines: &str, place: &str, message: &str) {
-    refused(
-        &format!("surfaces = [{{ file = \"a.bpt\" }}]\n[camera]\n{lines}"),
-        place,
-        message,
-    );
+    refused(&format!("surfaces = [{{ file = \"a.bpt\" }}]\n[camera]\n{lines}"), place, message);
 }
 
 #[test]
 fn everything_else_has_a_default() {
     let scene = parse("s.toml", LEAST).expect("valid");
-    assert_eq!(
-        (scene.image, scene.light),
-        (Image::default(), Light::default())
-    );
-    assert_eq!(
-        (scene.material, scene.background),
-        (Material::default(), [1.0; 3])
-    );
+    assert_eq!((scene.image, scene.light), (Image::default(), Light::default()));
+    assert_eq!((scene.material, scene.background), (Material::default(), [1.0; 3]));
     assert_eq!(scene.trace, TraceSettings::default());
     let up = [0.0, 0.0, 1.0];
-    assert_eq!(
-        scene.camera,
-        Camera::LookAt {
-            eye: [0.0, -5.0, 0.0],
-            look_at: [0.0; 3],
-            up,
-            fov: 40.0
-        }
-    );
+    assert_eq!(scene.camera, Camera::LookAt { eye: [0.0, -5.0, 0.0], look_at: [0.0; 3], up, fov: 40.0 });
     assert_eq!(scene.surfaces[0].file, Path::new("a.bpt"));
 }
 
 #[test]
 fn surfaces_and_camera_are_needed() {
     refused("", "s.toml:1:1", "the scene has no surfaces");
-    refused(
-        "surfaces = []\n[camera]\n",
-        "s.toml:1:1",
-        "the scene has no surfaces",
-    );
-    refused(
-        "surfaces = [{ file = \"a.bpt\" }]\n",
-        "s.toml:1:1",
-        "the scene has no camera",
-    );
+    refused("surfaces = []\n[camera]\n", "s.toml:1:1", "the scene has no surfaces");
+    refused("surfaces = [{ file = \"a.bpt\" }]\n", "s.toml:1:1", "the scene has no camera");
     refused("surfaces = [{}]\n", "s.toml:1:13", "missing field `file`");
 }
 
@@ -71,133 +44,49 @@ fn surfaces_and_camera_are_needed() {
 fn syntax() {
     refused("surfaces = [\n", "s.toml:1:13", "unclosed array");
     refused("image = \n", "s.toml:1:9", "string values must be quoted");
-    refused(
-        "[image]\nsize = [1, 2\n[light]\n",
-        "s.toml:3:1",
-        "missing comma",
-    );
+    refused("[image]\nsize = [1, 2\n[light]\n", "s.toml:3:1", "missing comma");
     refused("[image]\n[image]\n", "s.toml:2:2", "duplicate key");
 }
 
 #[test]
 fn unknown_names_with_the_nearest() {
-    refused_after(
-        "[lihgt]\n",
-        "s.toml:5:2",
-        "there is no `lihgt` here (did you mean `light`?)",
-    );
-    refused_after(
-        "fow = 3\n",
-        "s.toml:5:1",
-        "there is no `fow` here (did you mean `fov`?)",
-    );
-    refused_after(
-        "[material]\ncolor = [1, 1, 1]\n",
-        "s.toml:6:1",
-        "(did you mean `colour`?)",
-    );
-    refused_after(
-        "[trace]\nweather = 1\n",
-        "s.toml:6:1",
-        "there is no `weather` here",
-    );
-    refused_after(
-        "[trace]\nmethod = \"newton_coherent\"\n",
-        "s.toml:6:10",
-        "(did you mean `newton-coherent`?)",
-    );
-    refused_after(
-        "[trace]\nprecision = \"f16\"\n",
-        "s.toml:6:13",
-        "there is no `f16` here",
-    );
+    refused_after("[lihgt]\n", "s.toml:5:2", "there is no `lihgt` here (did you mean `light`?)");
+    refused_after("fow = 3\n", "s.toml:5:1", "there is no `fow` here (did you mean `fov`?)");
+    refused_after("[material]\ncolor = [1, 1, 1]\n", "s.toml:6:1", "(did you mean `colour`?)");
+    refused_after("[trace]\nweather = 1\n", "s.toml:6:1", "there is no `weather` here");
+    refused_after("[trace]\nmethod = \"newton_coherent\"\n", "s.toml:6:10", "(did you mean `newton-coherent`?)");
+    refused_after("[trace]\nprecision = \"f16\"\n", "s.toml:6:13", "there is no `f16` here");
     let report = rendered(&parse("s.toml", "[image]\nsice = 1\n").expect_err("refused"));
     assert!(report.contains("help: write one of size"), "{report}");
 }
 
 #[test]
 fn wrong_types() {
-    refused_after(
-        "fov = \"wide\"\n",
-        "s.toml:5:7",
-        "invalid type: string \"wide\", expected f64",
-    );
-    refused_after(
-        "[image]\nsize = [-1, 5]\n",
-        "s.toml:6:9",
-        "invalid value: integer `-1`, expected u32",
-    );
-    refused_after(
-        "[trace.limits]\nvoxels = 1.5\n",
-        "s.toml:6:10",
-        "invalid type: floating point `1.5`, expected u64",
-    );
+    refused_after("fov = \"wide\"\n", "s.toml:5:7", "invalid type: string \"wide\", expected f64");
+    refused_after("[image]\nsize = [-1, 5]\n", "s.toml:6:9", "invalid value: integer `-1`, expected u32");
+    refused_after("[trace.limits]\nvoxels = 1.5\n", "s.toml:6:10", "invalid type: floating point `1.5`, expected u64");
 }
 
 #[test]
 fn cameras() {
-    camera_refused(
-        "look_at = [0, 0, 0]\n",
-        "s.toml:2:1",
-        "the camera lacks `eye`",
-    );
-    camera_refused(
-        "eye = [0, 0, 0]\n",
-        "s.toml:2:1",
-        "the camera lacks `look_at`",
-    );
-    camera_refused(
-        "eye = [0, 0, 0]\nfov = 3\n",
-        "s.toml:2:1",
-        "the camera lacks `look_at`",
-    );
-    camera_refused(
-        "eye = [0, 0, 0]\nforward = [0, 1, 0]\n",
-        "s.toml:2:1",
-        "the camera lacks `right`",
-    );
+    camera_refused("look_at = [0, 0, 0]\n", "s.toml:2:1", "the camera lacks `eye`");
+    camera_refused("eye = [0, 0, 0]\n", "s.toml:2:1", "the camera lacks `look_at`");
+    camera_refused("eye = [0, 0, 0]\nfov = 3\n", "s.toml:2:1", "the camera lacks `look_at`");
+    camera_refused("eye = [0, 0, 0]\nforward = [0, 1, 0]\n", "s.toml:2:1", "the camera lacks `right`");
     camera_refused(
         "eye = [0, 0, 0]\nforward = [0, 1, 0]\nright = [1, 0, 0]\nup = [0, 0, 1]\nfov = 30\n",
         "s.toml:7:7",
         "the camera is given in two ways",
     );
-    camera_refused(
-        "eye = [0, 0]\nlook_at = [1, 0, 0]\n",
-        "s.toml:3:7",
-        "`eye` has 2 numbers",
-    );
-    camera_refused(
-        "eye = [0, 0, 0, 0]\nlook_at = [1, 0, 0]\n",
-        "s.toml:3:7",
-        "`eye` has 4 numbers",
-    );
-    camera_refused(
-        "eye = [0, nan, 0]\nlook_at = [1, 0, 0]\n",
-        "s.toml:3:7",
-        "`eye` holds NaN",
-    );
-    camera_refused(
-        "eye = [1, 0, 0]\nlook_at = [1, 0, 0]\n",
-        "s.toml:4:11",
-        "looks at the point where it is",
-    );
-    camera_refused(
-        "eye = [0, 0, 9]\nlook_at = [0, 0, 0]\n",
-        "s.toml:4:11",
-        "looks straight along `up`",
-    );
+    camera_refused("eye = [0, 0]\nlook_at = [1, 0, 0]\n", "s.toml:3:7", "`eye` has 2 numbers");
+    camera_refused("eye = [0, 0, 0, 0]\nlook_at = [1, 0, 0]\n", "s.toml:3:7", "`eye` has 4 numbers");
+    camera_refused("eye = [0, nan, 0]\nlook_at = [1, 0, 0]\n", "s.toml:3:7", "`eye` holds NaN");
+    camera_refused("eye = [1, 0, 0]\nlook_at = [1, 0, 0]\n", "s.toml:4:11", "looks at the point where it is");
+    camera_refused("eye = [0, 0, 9]\nlook_at = [0, 0, 0]\n", "s.toml:4:11", "looks straight along `up`");
     let up = "eye = [0, 0, 9]\nlook_at = [0, 9, 0]\nup = [0, 0, 0]\n";
-    camera_refused(
-        up,
-        "s.toml:5:6",
-        "looks straight along `up`, or `up` is zero",
-    );
+    camera_refused(up, "s.toml:5:6", "looks straight along `up`, or `up` is zero");
     for fov in ["0", "180", "-1", "nan", "inf"] {
-        refused_after(
-            &format!("fov = {fov}\n"),
-            "s.toml:5:7",
-            "the field of view is",
-        );
+        refused_after(&format!("fov = {fov}\n"), "s.toml:5:7", "the field of view is");
     }
     camera_refused(
         "eye = [0, 0, 0]\nforward = [0, 1, 0]\nright = [1, 1, 0]\nup = [1, 2, 0]\n",
@@ -213,72 +102,25 @@ fn cameras() {
 
 #[test]
 fn values_out_of_range() {
-    refused(
-        &format!("background = [0, 0, 2]\n{LEAST}"),
-        "s.toml:1:14",
-        "`background` is not a colour",
-    );
-    refused_after(
-        "[image]\nsize = [0, 5]\n",
-        "s.toml:6:8",
-        "not the size of an image",
-    );
-    refused_after(
-        "[image]\nsize = [5]\n",
-        "s.toml:6:8",
-        "not the size of an image",
-    );
-    refused_after(
-        "[image]\nsize = [5, 40000]\n",
-        "s.toml:6:8",
-        "not the size of an image",
-    );
-    refused_after(
-        "[light]\nposition = [1, 2]\n",
-        "s.toml:6:12",
-        "`position` of the light has 2 numbers",
-    );
-    refused_after(
-        "[light]\ncolour = [1, 2, -3]\n",
-        "s.toml:6:10",
-        "`colour` of the light is not a colour",
-    );
-    refused_after(
-        "[material]\nambient = -0.5\n",
-        "s.toml:6:11",
-        "`ambient` is -0.5",
-    );
-    refused_after(
-        "[material]\nshininess = 0\n",
-        "s.toml:6:13",
-        "`shininess` is 0",
-    );
-    refused_after(
-        "[trace]\nnewton_starts = 0\n",
-        "s.toml:6:17",
-        "`newton_starts` is 0",
-    );
+    refused(&format!("background = [0, 0, 2]\n{LEAST}"), "s.toml:1:14", "`background` is not a colour");
+    refused_after("[image]\nsize = [0, 5]\n", "s.toml:6:8", "not the size of an image");
+    refused_after("[image]\nsize = [5]\n", "s.toml:6:8", "not the size of an image");
+    refused_after("[image]\nsize = [5, 40000]\n", "s.toml:6:8", "not the size of an image");
+    refused_after("[light]\nposition = [1, 2]\n", "s.toml:6:12", "`position` of the light has 2 numbers");
+    refused_after("[light]\ncolour = [1, 2, -3]\n", "s.toml:6:10", "`colour` of the light is not a colour");
+    refused_after("[material]\nambient = -0.5\n", "s.toml:6:11", "`ambient` is -0.5");
+    refused_after("[material]\nshininess = 0\n", "s.toml:6:13", "`shininess` is 0");
+    refused_after("[trace]\nnewton_starts = 0\n", "s.toml:6:17", "`newton_starts` is 0");
     refused_after("[trace]\nthreads = 0\n", "s.toml:6:11", "`threads` is 0");
-    refused_after(
-        "[trace]\nflatness = inf\n",
-        "s.toml:6:12",
-        "`flatness` is inf",
-    );
-    refused_after(
-        "[trace]\ngrid_density = 0.0\n",
-        "s.toml:6:16",
-        "`grid_density` is 0",
-    );
+    refused_after("[trace]\nflatness = inf\n", "s.toml:6:12", "`flatness` is inf");
+    refused_after("[trace]\ngrid_density = 0.0\n", "s.toml:6:16", "`grid_density` is 0");
 }
 
 #[test]
 fn limits_keep_their_place() {
     let text = format!("{LEAST}[trace.limits]\nvoxels = 7\n'a b' = 0\n");
     let limits = parse("s.toml", &text).expect("valid").trace.limits;
-    let found: Vec<_> = limits
-        .iter()
-        .map(|limit| (&*limit.name, limit.value, &text[limit.span.clone()]))
-        .collect();
+    let found: Vec<_> = limits.iter().map(|limit| (&*limit.name, limit.value, &text[limit.span.clone()])).collect();
     assert_eq!(found, [("a b", 0, "'a b'"), ("voxels", 7, "voxels")]);
 }
 
@@ -288,51 +130,25 @@ fn files_are_joined_and_refused_by_place() {
     let square = "1 1\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n";
     fs::create_dir(folder.path().join("sub")).expect("made");
     fs::write(folder.path().join("sub/one.bpt"), format!("1\n{square}")).expect("written");
-    fs::write(
-        folder.path().join("two.bpt"),
-        format!("2\n{}{square}", square.replace("1 1 0", "1 1 nan")),
-    )
-    .expect("written");
+    fs::write(folder.path().join("two.bpt"), format!("2\n{}{square}", square.replace("1 1 0", "1 1 nan")))
+        .expect("written");
     let path = folder.path().join("scene.toml");
     let camera = "[camera]\neye = [0, -5, 0]\nlook_at = [0, 0, 0]\n";
-    fs::write(
-        &path,
-        format!("surfaces = [{{ file = \"sub/one.bpt\" }}, {{ file = \"two.bpt\" }}]\n{camera}"),
-    )
-    .expect("written");
+    fs::write(&path, format!("surfaces = [{{ file = \"sub/one.bpt\" }}, {{ file = \"two.bpt\" }}]\n{camera}"))
+        .expect("written");
 
     let scene = read(&path, OnInvalid::Skip).expect("valid");
-    let numbers: Vec<_> = scene
-        .model
-        .surfaces
-        .iter()
-        .map(|surface| surface.number)
-        .collect();
+    let numbers: Vec<_> = scene.model.surfaces.iter().map(|surface| surface.number).collect();
     assert_eq!(numbers, [0, 1]);
     let file = scene.file_of(1).expect("of the second file");
-    assert_eq!(
-        (&file.path, file.surfaces.clone()),
-        (&folder.path().join("two.bpt"), 1..2)
-    );
+    assert_eq!((&file.path, file.surfaces.clone()), (&folder.path().join("two.bpt"), 1..2));
     assert_eq!(file.skipped[0].number, 0);
     assert!(scene.file_of(2).is_none());
     let place = format!("{}:6:5", file.path.display());
-    assert_refused(
-        read(&path, OnInvalid::Refuse),
-        &place,
-        "z of point 3 of surface 0 is not a number",
-    );
+    assert_refused(read(&path, OnInvalid::Refuse), &place, "z of point 3 of surface 0 is not a number");
 
-    fs::write(
-        &path,
-        format!("surfaces = [{{ file = \"gone.bpt\" }}]\n{camera}"),
-    )
-    .expect("written");
-    assert_refused(
-        read(&path, OnInvalid::Refuse),
-        &format!("{}:1:22", path.display()),
-        "cannot read `",
-    );
+    fs::write(&path, format!("surfaces = [{{ file = \"gone.bpt\" }}]\n{camera}")).expect("written");
+    assert_refused(read(&path, OnInvalid::Refuse), &format!("{}:1:22", path.display()), "cannot read `");
 }
 
 proptest! {

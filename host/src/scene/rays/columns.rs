@@ -17,22 +17,12 @@ pub(super) type Columns = [Option<usize>; NAMES.len()];
 
 /// The list of columns for messages.
 pub(super) fn allowed() -> String {
-    format!(
-        "{}, and optionally {}",
-        NAMES[..REQUIRED].join(","),
-        NAMES[REQUIRED..].join(", ")
-    )
+    format!("{}, and optionally {}", NAMES[..REQUIRED].join(","), NAMES[REQUIRED..].join(", "))
 }
 
 /// The columns that a header names.
 pub(super) fn of_header(header: &StringRecord) -> Result<Columns, Fault> {
-    let fault = |at, message| {
-        Err(Fault {
-            at,
-            message,
-            help: format!("the columns are {}, in any order", allowed()),
-        })
-    };
+    let fault = |at, message| Err(Fault { at, message, help: format!("the columns are {}, in any order", allowed()) });
     let mut columns = Columns::default();
     for (field, name) in header.iter().map(str::trim).enumerate() {
         if field == 0 && name.parse::<f64>().is_ok() {
@@ -43,26 +33,17 @@ pub(super) fn of_header(header: &StringRecord) -> Result<Columns, Fault> {
         }
         match NAMES.iter().position(|&known| known == name) {
             Some(column) if columns[column].is_some() => {
-                return fault(
-                    At::Field(field),
-                    format!("the column `{name}` stands twice"),
-                );
+                return fault(At::Field(field), format!("the column `{name}` stands twice"));
             }
             Some(column) => columns[column] = Some(field),
             None => {
                 let suggestion = did_you_mean(name, &NAMES).unwrap_or_default();
-                return fault(
-                    At::Field(field),
-                    format!("there is no column `{}`{suggestion}", shown(name)),
-                );
+                return fault(At::Field(field), format!("there is no column `{}`{suggestion}", shown(name)));
             }
         }
     }
     match (0..REQUIRED).find(|&column| columns[column].is_none()) {
-        Some(column) => fault(
-            At::WholeLine,
-            format!("the column `{}` is missing", NAMES[column]),
-        ),
+        Some(column) => fault(At::WholeLine, format!("the column `{}` is missing", NAMES[column])),
         None => Ok(columns),
     }
 }
