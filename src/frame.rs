@@ -4,8 +4,8 @@
 //! whatever the unit; they are never shifted, since a shift rounds and would part edges that neighbours share to the bit.
 //! Instead a ray's origin is moved, once, to where the ray enters the scene's box.
 
-use crate::planes::{Axis, DepthRange, Planes};
-use crate::ray::{Interval, Ray, RayError};
+use crate::planes::{DepthRange, Planes};
+use crate::ray::{Axis, Interval, Ray, RayError};
 use crate::scalar::{Scalar, Vector3};
 
 /// By how many roundings ([`Scalar::EPSILON`] in the frame, where coordinates are below 1) boxes are padded.
@@ -31,6 +31,9 @@ pub struct Aabb<S> {
 impl<S: Scalar> Aabb<S> {
     /// The box around nothing; adding a point makes it that point.
     pub const EMPTY: Self = Aabb { low: [S::INFINITY; 3], high: [S::ZERO; 3] };
+
+    /// The box of the one point 0.
+    pub const ORIGIN: Self = Aabb { low: [S::ZERO; 3], high: [S::ZERO; 3] };
 
     /// Whether no point was added yet.
     pub fn is_empty(&self) -> bool {
@@ -92,7 +95,7 @@ pub struct Frame<S> {
 impl<S: Scalar> Frame<S> {
     /// The frame of a scene whose control points fill `bounds`, in the caller's coordinates.
     pub fn new(bounds: Aabb<S>) -> Self {
-        let bounds = if bounds.is_empty() { Aabb { low: [S::ZERO; 3], high: [S::ZERO; 3] } } else { bounds };
+        let bounds = if bounds.is_empty() { Aabb::ORIGIN } else { bounds };
         let reach = S::Vec3::from_array(bounds.low).largest().greater(S::Vec3::from_array(bounds.high).largest());
         let exponent = if reach > S::ZERO { -reach.binary_exponent() } else { 0 };
         let exponent = exponent.clamp(-S::MAX_SCALE, S::MAX_SCALE);
@@ -136,31 +139,33 @@ impl<S: Scalar> Frame<S> {
         if !sum.is_finite() {
             refuse_not_finite(&origin, &direction)?;
         }
-        let speed = S::Vec3::from_array(direction).largest();
+        let axis = Axis::dominant(&direction);
+        let speed = axis.of(&direction).abs();
         if !(speed > S::ZERO) {
             return Err(RayError::ZeroDirection);
         }
-        let farthest = (S::Vec3::from_array(origin).largest() + self.reach) / speed;
+        let distance = S::Vec3::from_array(origin).largest();
+        let farthest = (distance + self.reach) / speed;
         let step = self.unscale / speed * S::EPSILON;
         if !(farthest * S::from_u32(8)).is_finite() || !step.is_finite() || step < S::MIN_POSITIVE {
             return Err(RayError::Unrepresentable);
         }
-        Ok(Ray { origin, direction })
+        Ok(Ray { origin, direction, axis, far: distance > self.reach * S::from_u32(NEAR) })
     }
 
     /// The ray's two planes, with its origin moved to where the interval meets the scene's box, and the range of depths
     /// inside; `None` if they do not meet.
-    #[inline]
+    #[inline(always)]
     pub fn enter(&self, ray: &Ray<S>, interval: &Interval<S>) -> Option<(Planes<S>, DepthRange<S>)> {
-        let axis = Axis::dominant(&ray.direction);
+        let axis = ray.axis;
         let speed = axis.of(&ray.direction).abs();
         let direction = ray.direction.map(|c| c / speed);
         let inverse = direction.map(|c| S::ONE / c);
         let (mut origin, mut t_origin) = (ray.origin, S::ZERO);
-        if S::Vec3::from_array(origin).largest() > self.reach * S::from_u32(NEAR) {
+        if ray.far {
             (origin, t_origin) = self.approach(ray, axis)?;
         }
-        let (near, far) = self.bounds.depths(&origin, &direction, &inverse)?;
+        let (near, far) = self.bounds.depths(&origin, &inverse)?;
         let start = near.greater((interval.min - t_origin) * speed);
         let end = far.lesser((interval.max - t_origin) * speed);
         if !(start <= end) {
@@ -192,24 +197,16 @@ impl<S: Scalar> Frame<S> {
 
 impl<S: Scalar> Aabb<S> {
     /// The depths at which the line `origin + depth · direction` enters and leaves the box, `None` if it passes by.
-    /// `inverse` is 1 / `direction`, component by component; infinite components of it are expected.
+    /// `inverse` is 1 / `direction`, component by component, infinite where that is 0: then both products are infinite,
+    /// of one sign if the line passes by, and 0 · ∞, a NaN, bounds nothing, which is safe.
     #[inline(always)]
-    pub(crate) fn depths(&self, origin: &[S; 3], direction: &[S; 3], inverse: &[S; 3]) -> Option<(S, S)> {
+    pub(crate) fn depths(&self, origin: &[S; 3], inverse: &[S; 3]) -> Option<(S, S)> {
         let (mut near, mut far) = (-S::INFINITY, S::INFINITY);
         for k in 0..3 {
-            let below = self.low[k] - origin[k];
-            let above = self.high[k] - origin[k];
-            if direction[k] == S::ZERO {
-                if below > S::ZERO || above < S::ZERO {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = (below * inverse[k], above * inverse[k]);
-            let (first, last) = if direction[k] > S::ZERO { (a, b) } else { (b, a) };
-            // A product 0 · ∞ is NaN and bounds nothing, which is safe.
-            near = near.greater(first);
-            far = far.lesser(last);
+            let a = (self.low[k] - origin[k]) * inverse[k];
+            let b = (self.high[k] - origin[k]) * inverse[k];
+            near = near.greater(a.lesser(b));
+            far = far.lesser(a.greater(b));
         }
         if near <= far { Some((near, far)) } else { None }
     }

@@ -17,7 +17,8 @@ use crate::subdivide::Patches;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct GridSlot<S> {
-    pub(crate) low: [S; 3],
+    /// The box that the voxels fill.
+    pub(crate) bounds: Aabb<S>,
     /// Side lengths of a voxel.
     pub(crate) cell: [S; 3],
     /// Their inverses.
@@ -43,15 +44,9 @@ const MAX_ALONG_AXIS: u32 = 1 << 9;
 pub struct TooLarge;
 
 impl<S: Scalar> GridSlot<S> {
-    /// The box that the voxels fill.
-    pub fn bounds(&self) -> Aabb<S> {
-        let high = core::array::from_fn(|k| self.low[k] + S::from_u32(self.counts[k]) * self.cell[k]);
-        Aabb { low: self.low, high }
-    }
-
     /// What a slot holds before it is filled: a grid without voxels.
     pub const EMPTY: Self =
-        GridSlot { low: [S::ZERO; 3], cell: [S::ZERO; 3], inverse_cell: [S::ZERO; 3], counts: [0; 3], first: 0 };
+        GridSlot { bounds: Aabb::ORIGIN, cell: [S::ZERO; 3], inverse_cell: [S::ZERO; 3], counts: [0; 3], first: 0 };
 
     /// The most voxels that one line can pass.
     pub fn longest_walk(&self) -> u32 {
@@ -76,7 +71,7 @@ impl<S: Scalar> GridSlot<S> {
         let first = u32::try_from(offsets.len()).map_err(|_| TooLarge)?;
         let cell = core::array::from_fn(|k| bounds.sides()[k] / S::from_u32(counts[k]));
         let inverse_cell = cell.map(|side: S| if side > S::ZERO { S::ONE / side } else { S::ZERO });
-        let slot = GridSlot { low: bounds.low, cell, inverse_cell, counts, first };
+        let slot = GridSlot { bounds, cell, inverse_cell, counts, first };
         let voxels = counts.iter().product::<u32>() as usize;
         let from = references.len();
         offsets.extend(voxels + 1, 0);
@@ -129,7 +124,9 @@ impl<S: Scalar> GridSlot<S> {
     /// The voxel's index along an axis that holds a coordinate; the nearest one outside the grid.
     #[inline(always)]
     pub(crate) fn index(&self, coordinate: S, axis: usize) -> u32 {
-        ((coordinate - self.low[axis]) * self.inverse_cell[axis]).to_u32().min(self.counts[axis].saturating_sub(1))
+        ((coordinate - self.bounds.low[axis]) * self.inverse_cell[axis])
+            .to_u32()
+            .min(self.counts[axis].saturating_sub(1))
     }
 
     /// Calls `visit` with each voxel of a box's block, and the bits of those of its neighbours that belong to it too.

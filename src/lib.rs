@@ -25,6 +25,8 @@ pub mod patch;
 
 pub mod subdivide;
 
+pub mod tree;
+
 pub mod grid;
 pub mod walk;
 

@@ -12,7 +12,7 @@
 //! give eq. (1), the point where the ray meets the parallelogram, and where it enters and leaves the box.
 
 use crate::frame::Aabb;
-use crate::planes::{DepthRange, Planes, Projected};
+use crate::planes::{Columns, DepthRange, Planes};
 use crate::scalar::{Scalar, Vector3};
 use crate::surface::{Net, Point};
 
@@ -109,13 +109,14 @@ fn width<S: Scalar>(index: u16) -> S {
     S::ONE / S::from_u32(1 << level(index))
 }
 
-/// A box with skew sides: centre ± e1 ± e2 ± e3, in the frame.
+/// A box with skew sides: centre ± e1 ± e2 ± e3, in the frame; e1, e2, e3 are along v1, v2 and v1 × v2.
+///
+/// For each coordinate axis the four numbers centre, e1, e2, e3 stand together: the ray test multiplies the four of the
+/// ray's steepest axis by one slope and subtracts them from the four of another, which vector units do at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Parallelepiped<S> {
-    centre: [S; 3],
-    /// Half edges, along v1, v2 and v1 × v2.
-    half: [[S; 3]; 3],
+    axes: [[S; 4]; 3],
 }
 
 /// A patch as a slot of lent memory: 64 bytes in `f32`.
@@ -123,8 +124,6 @@ pub struct Parallelepiped<S> {
 #[repr(C)]
 pub struct Patch<S> {
     bounds: Parallelepiped<S>,
-    /// Where the parallelogram lies between the box's faces, in units of e3.
-    plane: S,
     /// The most by which derivatives stray from the parallelogram's sides: see [`Crossing::at_most_once`].
     stray: S,
     /// How many times longer the box is than the parallelogram, along v1 and v2, in steps of 1 / [`SIDE_STEPS`]: good for
@@ -138,8 +137,10 @@ const SIDE_STEPS: u32 = 2048;
 /// How a ray passes a box: the projected parts and their cross products.
 #[derive(Clone, Copy, Debug)]
 pub struct Crossing<S> {
-    centre: Projected<S>,
-    half: [Projected<S>; 3],
+    /// Of e1 and e2: |f| + |g|.
+    lengths: [S; 2],
+    /// Depths of the centre, and of e1, e2 and e3.
+    depths: [S; 4],
     /// e2 × e3, e3 × e1, e1 × e2: the ray's direction in the box's coordinates, up to a factor.
     along: [S; 3],
     /// centre × e1, e2, e3.
@@ -157,31 +158,43 @@ pub struct Pierce<S> {
 
 impl<S: Scalar> Parallelepiped<S> {
     /// What a slot holds before it is filled.
-    pub const EMPTY: Self = Parallelepiped { centre: [S::ZERO; 3], half: [[S::ZERO; 3]; 3] };
+    pub const EMPTY: Self = Parallelepiped { axes: [[S::ZERO; 4]; 3] };
+
+    fn new(centre: S::Vec3, edges: [S::Vec3; 3]) -> Self {
+        let [c, e1, e2, e3] = [centre, edges[0], edges[1], edges[2]].map(Vector3::to_array);
+        Parallelepiped { axes: core::array::from_fn(|k| [c[k], e1[k], e2[k], e3[k]]) }
+    }
 
     /// Whether a ray, as a whole line, meets the box; and how.
     #[inline(always)]
     pub fn crossing(&self, planes: &Planes<S>) -> Option<Crossing<S>> {
-        let centre = planes.point(&self.centre);
-        let [e1, e2, e3] = [planes.vector(&self.half[0]), planes.vector(&self.half[1]), planes.vector(&self.half[2])];
-        let [n1, n2, n3] = [e2.cross(&e3), e3.cross(&e1), e1.cross(&e2)];
-        let [a1, a2, a3] = [n1.abs(), n2.abs(), n3.abs()];
-        let [c1, c2, c3] = [centre.cross(&e1), centre.cross(&e2), centre.cross(&e3)];
+        let Columns { f, g, depth } = planes.columns(&self.axes);
+        let [fc, f1, f2, f3] = f;
+        let [gc, g1, g2, g3] = g;
+        let along = [f2 * g3 - g2 * f3, f3 * g1 - g3 * f1, f1 * g2 - g1 * f2];
+        let offset = [fc * g1 - gc * f1, fc * g2 - gc * f2, fc * g3 - gc * f3];
+        let [a1, a2, a3] = along.map(S::abs);
         // A NaN, from lent memory that nobody filled, fails all three.
-        let inside = (c1.abs() <= a3 + a2) & (c2.abs() <= a3 + a1) & (c3.abs() <= a1 + a2);
+        let inside = (offset[0].abs() <= a3 + a2) & (offset[1].abs() <= a3 + a1) & (offset[2].abs() <= a1 + a2);
         if inside {
-            Some(Crossing { centre, half: [e1, e2, e3], along: [n1, n2, n3], offset: [c1, c2, c3] })
+            Some(Crossing { lengths: [f1.abs() + g1.abs(), f2.abs() + g2.abs()], depths: depth, along, offset })
         } else {
             None
         }
     }
 
+    /// Whether a ray, as a whole line, meets the box.
+    #[inline(always)]
+    pub fn met(&self, planes: &Planes<S>) -> bool {
+        self.crossing(planes).is_some()
+    }
+
     /// The box along the axes around it.
     pub fn aabb(&self) -> Aabb<S> {
-        let reach: [S; 3] = core::array::from_fn(|k| self.half.iter().fold(S::ZERO, |sum, e| sum + e[k].abs()));
+        let reach = self.axes.map(|[_, e1, e2, e3]| e1.abs() + e2.abs() + e3.abs());
         Aabb {
-            low: core::array::from_fn(|k| self.centre[k] - reach[k]),
-            high: core::array::from_fn(|k| self.centre[k] + reach[k]),
+            low: core::array::from_fn(|k| self.axes[k][0] - reach[k]),
+            high: core::array::from_fn(|k| self.axes[k][0] + reach[k]),
         }
     }
 }
@@ -190,8 +203,9 @@ impl<S: Scalar> Crossing<S> {
     /// Whether the box's depths overlap a range; coarse, but never wrong when it says no.
     #[inline(always)]
     pub fn overlaps(&self, range: &DepthRange<S>) -> bool {
-        let reach = self.half[0].depth.abs() + self.half[1].depth.abs() + self.half[2].depth.abs();
-        self.centre.depth - reach <= range.max && self.centre.depth + reach >= range.min
+        let [centre, e1, e2, e3] = self.depths;
+        let reach = e1.abs() + e2.abs() + e3.abs();
+        centre - reach <= range.max && centre + reach >= range.min
     }
 
     /// Eq. (1) of the paper, tan α > f · b/h: the ray passes nearly parallel to the box's larger face.
@@ -239,7 +253,8 @@ impl<S: Scalar> Crossing<S> {
         }
         let at = |s: S| {
             let place: [S; 3] = core::array::from_fn(|k| base[k] + step[k] * s);
-            let depth = (0..3).fold(self.centre.depth, |sum, k| sum + place[k] * self.half[k].depth);
+            let [centre, e1, e2, e3] = self.depths;
+            let depth = centre + place[0] * e1 + place[1] * e2 + place[2] * e3;
             Pierce { local: [place[0], place[1]], depth }
         };
         let (a, b) = (at(first), at(last));
@@ -250,7 +265,7 @@ impl<S: Scalar> Crossing<S> {
 impl<S: Scalar> Patch<S> {
     /// What a slot holds before it is filled.
     pub const EMPTY: Self =
-        Patch { bounds: Parallelepiped::EMPTY, plane: S::ZERO, stray: S::ZERO, sides: [0; 2], domain: Domain::WHOLE };
+        Patch { bounds: Parallelepiped::EMPTY, stray: S::ZERO, sides: [0; 2], domain: Domain::WHOLE };
 
     /// The enclosing parallelepiped.
     pub fn bounds(&self) -> &Parallelepiped<S> {
@@ -277,21 +292,23 @@ impl<S: Scalar> Patch<S> {
     /// polynomial surfaces; for rational ones it is infinite.
     #[inline(always)]
     pub fn at_most_once(&self, crossing: &Crossing<S>) -> bool {
-        let [e1, e2, _] = &crossing.half;
-        !self.domain.is_rough() && self.stray * e1.norm().greater(e2.norm()) < crossing.along[2].abs()
+        let [e1, e2] = crossing.lengths;
+        !self.domain.is_rough() && self.stray * e1.greater(e2) < crossing.along[2].abs()
     }
 
     /// Start: where the ray meets the parallelogram's plane, held within the box. `None` edge on.
+    ///
+    /// The parallelogram is taken in the middle between the box's faces (ours): the patch strays from it to both sides by
+    /// half of what it strays from the plane of its corners to one.
     #[inline(always)]
     pub fn parallelogram(&self, crossing: &Crossing<S>) -> Option<[S; 2]> {
-        let [n1, n2, n3] = crossing.along;
+        let n3 = crossing.along[2];
         let [c1, c2, _] = crossing.offset;
         if n3 == S::ZERO {
             return None;
         }
         let inverse = S::ONE / n3;
-        let a = (self.plane * n1 - c2) * inverse;
-        let b = (self.plane * n2 + c1) * inverse;
+        let (a, b) = (-c2 * inverse, c1 * inverse);
         if !(a.is_finite() && b.is_finite()) {
             return None;
         }
@@ -325,7 +342,6 @@ pub struct Measure<S> {
     pub twist: S,
     /// Lengths of v1 and v2.
     pub sides: [S; 2],
-    plane: S,
     stray: S,
     ratios: [S; 2],
 }
@@ -358,15 +374,11 @@ impl<S: Scalar> Measure<S> {
         let (middle, thickness) = ((low + high) * S::HALF, (high - low) * S::HALF + padding);
         let (bend_u, bend_v) = bends(net);
         Measure {
-            bounds: Parallelepiped {
-                centre: (centre + n * middle).to_array(),
-                half: [(f1 * a1).to_array(), (f2 * a2).to_array(), (n * thickness).to_array()],
-            },
+            bounds: Parallelepiped::new(centre + n * middle, [f1 * a1, f2 * a2, n * thickness]),
             bend_u,
             bend_v,
             twist: (p00 - p10 - p01 + p11).length() * S::from_f64(0.25),
             sides: [v1.length(), v2.length()],
-            plane: if thickness > S::ZERO { -middle / thickness } else { S::ZERO },
             // Sides of the parallelogram are v, those of the box 2 a f.
             ratios: [a1 + a1, a2 + a2],
             stray: if skewed || P::RATIONAL {
@@ -381,7 +393,7 @@ impl<S: Scalar> Measure<S> {
     pub fn patch(&self, domain: Domain) -> Patch<S> {
         let steps = S::from_u32(SIDE_STEPS);
         let sides = self.ratios.map(|ratio| (ratio * steps).to_u32().min(u32::from(u16::MAX)) as u16);
-        Patch { bounds: self.bounds, plane: self.plane, stray: self.stray, sides, domain }
+        Patch { bounds: self.bounds, stray: self.stray, sides, domain }
     }
 }
 

@@ -5,52 +5,9 @@
 //! contain the axis along which the ray is steepest, so that projecting costs two products instead of six. The distance
 //! √(f² + g²) so measured is at least the point's true distance from the ray, and at most √3 times it.
 
-use crate::ray::Interval;
+use crate::ray::{Axis, Interval};
 use crate::scalar::Scalar;
 use crate::surface::Point;
-
-/// A coordinate axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Axis {
-    /// The first coordinate.
-    X,
-    /// The second coordinate.
-    Y,
-    /// The third coordinate.
-    Z,
-}
-
-impl Axis {
-    /// The axis of the largest |component|; the first of equal ones.
-    #[inline(always)]
-    pub(crate) fn dominant<S: Scalar>(vector: &[S; 3]) -> Axis {
-        let [x, y, z] = vector.map(S::abs);
-        if x >= y {
-            if x >= z { Axis::X } else { Axis::Z }
-        } else if y >= z {
-            Axis::Y
-        } else {
-            Axis::Z
-        }
-    }
-
-    /// The component along this axis.
-    #[inline(always)]
-    pub(crate) fn of<S: Scalar>(self, vector: &[S; 3]) -> S {
-        vector[self as usize]
-    }
-
-    /// The two other axes, in cyclic order.
-    #[inline(always)]
-    fn others(self) -> (Axis, Axis) {
-        match self {
-            Axis::X => (Axis::Y, Axis::Z),
-            Axis::Y => (Axis::Z, Axis::X),
-            Axis::Z => (Axis::X, Axis::Y),
-        }
-    }
-}
 
 /// A stretch of a ray by depth: distance from the moved origin along the ray's steepest axis, in the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,12 +26,25 @@ pub struct Planes<S> {
     /// How much the two other coordinates grow per unit of the steepest one; within [−1, 1].
     slopes: [S; 2],
     origin: [S; 3],
-    /// Per unit of depth: ±1 along the steepest axis.
+    /// The origin in the order of `axes`: kept so because reordering it per point would go through memory.
+    ordered: [S; 3],
+    /// What the two planes make of the origin.
+    constant: [S; 2],
+    /// ±1: the direction along the steepest axis, per unit of depth.
+    forward: S,
     direction: [S; 3],
     inverse: [S; 3],
     t_origin: S,
     t_per_depth: S,
     interval: Interval<S>,
+}
+
+/// A point and three vectors in the two planes' system, side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns<S> {
+    pub(crate) f: [S; 4],
+    pub(crate) g: [S; 4],
+    pub(crate) depth: [S; 4],
 }
 
 /// What a ray's planes make of a vector or a point: its coordinates f and g in the two planes' system, and its depth.
@@ -117,7 +87,21 @@ impl<S: Scalar> Planes<S> {
         let (first, second) = axis.others();
         let forward = axis.of(&direction);
         let slopes = [first.of(&direction) * forward, second.of(&direction) * forward];
-        Planes { axes: [axis, first, second], slopes, origin, direction, inverse, t_origin, t_per_depth, interval }
+        let ordered = [axis.of(&origin), first.of(&origin), second.of(&origin)];
+        let constant = [ordered[1] - slopes[0] * ordered[0], ordered[2] - slopes[1] * ordered[0]];
+        Planes {
+            constant,
+            axes: [axis, first, second],
+            slopes,
+            origin,
+            ordered,
+            forward,
+            direction,
+            inverse,
+            t_origin,
+            t_per_depth,
+            interval,
+        }
     }
 
     /// The moved origin, in the frame: where depth is 0.
@@ -139,32 +123,55 @@ impl<S: Scalar> Planes<S> {
     #[inline(always)]
     pub fn vector(&self, vector: &[S; 3]) -> Projected<S> {
         let [steep, first, second] = self.axes;
-        let along = steep.of(vector);
-        Projected {
-            f: first.of(vector) - self.slopes[0] * along,
-            g: second.of(vector) - self.slopes[1] * along,
-            depth: along * steep.of(&self.direction),
-        }
+        self.shear(steep.of(vector), first.of(vector), second.of(vector))
     }
 
     /// A point of the frame in the two planes' system: (0, 0) on the ray.
     #[inline(always)]
     pub fn point(&self, point: &[S; 3]) -> Projected<S> {
-        self.vector(&[point[0] - self.origin[0], point[1] - self.origin[1], point[2] - self.origin[2]])
+        let [steep, first, second] = self.axes;
+        let [o, o1, o2] = self.ordered;
+        self.shear(steep.of(point) - o, first.of(point) - o1, second.of(point) - o2)
+    }
+
+    /// A point and three vectors at once, given by their components along each axis: see [`Columns`].
+    ///
+    /// The origin enters as one constant per plane, rounded once more than in [`Planes::point`].
+    #[inline(always)]
+    pub(crate) fn columns(&self, axes: &[[S; 4]; 3]) -> Columns<S> {
+        let [steep, first, second] = self.axes.map(|axis| &axes[axis as usize]);
+        let [slope1, slope2] = self.slopes;
+        let mut f: [S; 4] = core::array::from_fn(|k| first[k] - slope1 * steep[k]);
+        let mut g: [S; 4] = core::array::from_fn(|k| second[k] - slope2 * steep[k]);
+        f[0] = f[0] - self.constant[0];
+        g[0] = g[0] - self.constant[1];
+        let mut depth = steep.map(|along| along * self.forward);
+        depth[0] = depth[0] - self.ordered[0] * self.forward;
+        Columns { f, g, depth }
     }
 
     /// A control point or a sum of them, times its weight (1 for a plain one): f, g and depth are multiplied by it too.
     #[inline(always)]
     pub fn weighted<P: Point<Scalar = S>>(&self, point: P) -> Projected<S> {
-        let [x, y, z] = point.weighted_position();
-        let w = point.weight();
-        self.vector(&[x - self.origin[0] * w, y - self.origin[1] * w, z - self.origin[2] * w])
+        if !P::RATIONAL {
+            return self.point(&point.weighted_position());
+        }
+        let [steep, first, second] = self.axes;
+        let ([o, o1, o2], w) = (self.ordered, point.weight());
+        let p = point.weighted_position();
+        self.shear(steep.of(&p) - o * w, first.of(&p) - o1 * w, second.of(&p) - o2 * w)
     }
 
     /// A derivative of such a sum, whose weight part is that of the derivative (0 for a plain one).
     #[inline(always)]
     pub fn derivative<P: Point<Scalar = S>>(&self, derivative: P) -> Projected<S> {
         if P::RATIONAL { self.weighted(derivative) } else { self.vector(&derivative.weighted_position()) }
+    }
+
+    #[inline(always)]
+    fn shear(&self, along: S, first: S, second: S) -> Projected<S> {
+        let [slope1, slope2] = self.slopes;
+        Projected { f: first - slope1 * along, g: second - slope2 * along, depth: along * self.forward }
     }
 
     /// The caller's t at a depth.

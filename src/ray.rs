@@ -9,6 +9,10 @@ use crate::scalar::Scalar;
 pub struct Ray<S> {
     pub(crate) origin: [S; 3],
     pub(crate) direction: [S; 3],
+    /// The axis along which the direction is steepest.
+    pub(crate) axis: Axis,
+    /// Whether the origin is far from the scene, so that it has to be moved with care.
+    pub(crate) far: bool,
 }
 
 impl<S: Scalar> Ray<S> {
@@ -27,6 +31,49 @@ impl<S: Scalar> Ray<S> {
         let [x, y, z] = self.origin;
         let [dx, dy, dz] = self.direction;
         [x + t * dx, y + t * dy, z + t * dz]
+    }
+}
+
+/// A coordinate axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Axis {
+    /// The first coordinate.
+    X,
+    /// The second coordinate.
+    Y,
+    /// The third coordinate.
+    Z,
+}
+
+impl Axis {
+    /// The axis of the largest |component|; the first of equal ones.
+    #[inline(always)]
+    pub(crate) fn dominant<S: Scalar>(vector: &[S; 3]) -> Axis {
+        let [x, y, z] = vector.map(S::abs);
+        if x >= y {
+            if x >= z { Axis::X } else { Axis::Z }
+        } else if y >= z {
+            Axis::Y
+        } else {
+            Axis::Z
+        }
+    }
+
+    /// The component along this axis.
+    #[inline(always)]
+    pub(crate) fn of<S: Scalar>(self, vector: &[S; 3]) -> S {
+        vector[self as usize]
+    }
+
+    /// The two other axes, in cyclic order.
+    #[inline(always)]
+    pub(crate) fn others(self) -> (Axis, Axis) {
+        match self {
+            Axis::X => (Axis::Y, Axis::Z),
+            Axis::Y => (Axis::Z, Axis::X),
+            Axis::Z => (Axis::X, Axis::Y),
+        }
     }
 }
 

@@ -29,13 +29,7 @@ pub struct SurfaceSlot<S> {
 
 impl<S: Scalar> SurfaceSlot<S> {
     /// What a slot holds before it is filled.
-    pub const EMPTY: Self = SurfaceSlot {
-        bounds: Aabb { low: [S::ZERO; 3], high: [S::ZERO; 3] },
-        bend: S::ZERO,
-        first: 0,
-        degree_u: 0,
-        degree_v: 0,
-    };
+    pub const EMPTY: Self = SurfaceSlot { bounds: Aabb::ORIGIN, bend: S::ZERO, first: 0, degree_u: 0, degree_v: 0 };
 }
 
 /// Lent memory for a scene.
@@ -281,7 +275,7 @@ impl<'m, P: Point> Scene<'m, P> {
                 for number in voxel.fresh() {
                     let slot = self.surfaces.get(number).ok_or(Limit::Slot)?;
                     spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
-                    let Some((near, far)) = slot.bounds.depths(&origin, &direction, &inverse) else {
+                    let Some((near, far)) = slot.bounds.depths(&origin, &inverse) else {
                         continue;
                     };
                     let within = DepthRange { min: near.greater(range.min), max: far.lesser(farthest) };

@@ -9,6 +9,7 @@ use crate::frame::{Frame, PADDING};
 use crate::patch::{Domain, MAX_LEVEL, Measure, Parallelepiped, Patch};
 use crate::scalar::Scalar;
 use crate::surface::{Full, Net, Point};
+use crate::tree::Tree;
 use heapless::vec::{Vec, VecView};
 
 /// How finely surfaces are subdivided.
@@ -101,17 +102,6 @@ pub struct Patches<'m, S> {
     first: &'m [u32],
 }
 
-/// The binary trees of a scene, in pre-order: a view of lent memory.
-///
-/// `links` holds, for each node of a tree in pre-order, the number of patches below it, 1 for a leaf. A subtree of k
-/// patches takes 2k − 1 links and k − 1 inner nodes, so a walk needs neither stack nor pointers: it goes on by one if the
-/// ray meets the node's box, else by the whole subtree. A leaf's box is its patch's.
-#[derive(Clone, Copy, Debug)]
-pub struct Tree<'m, S> {
-    nodes: &'m [Parallelepiped<S>],
-    links: &'m [u32],
-}
-
 impl<'m, S: Scalar> Patches<'m, S> {
     /// The view of memory that was filled before, such as a table in flash.
     pub fn new(patches: &'m [Patch<S>], first: &'m [u32]) -> Self {
@@ -125,7 +115,7 @@ impl<'m, S: Scalar> Patches<'m, S> {
 
     /// Where a surface's patches begin and end.
     #[inline]
-    fn range(&self, surface: usize) -> Option<(usize, usize)> {
+    pub(crate) fn range(&self, surface: usize) -> Option<(usize, usize)> {
         Some((*self.first.get(surface)? as usize, *self.first.get(surface + 1)? as usize))
     }
 
@@ -134,29 +124,6 @@ impl<'m, S: Scalar> Patches<'m, S> {
     pub fn of_surface(&self, surface: usize) -> Option<&'m [Patch<S>]> {
         let (first, end) = self.range(surface)?;
         self.patches.get(first..end)
-    }
-}
-
-impl<'m, S: Scalar> Tree<'m, S> {
-    /// The view of memory that was filled before.
-    pub fn new(nodes: &'m [Parallelepiped<S>], links: &'m [u32]) -> Self {
-        Tree { nodes, links }
-    }
-
-    /// All inner nodes.
-    pub fn nodes(&self) -> &'m [Parallelepiped<S>] {
-        self.nodes
-    }
-
-    /// Inner nodes and links of one surface's tree; `None` if the memory does not hold them.
-    #[inline]
-    pub fn of_surface(&self, patches: &Patches<'m, S>, surface: usize) -> Option<(&'m [Parallelepiped<S>], &'m [u32])> {
-        // A tree over k patches has k − 1 inner nodes and 2k − 1 links.
-        let (first, end) = patches.range(surface)?;
-        let next = surface.checked_add(1)?;
-        let nodes = self.nodes.get(first.checked_sub(surface)?..end.checked_sub(next)?)?;
-        let links = self.links.get((first * 2).checked_sub(surface)?..(end * 2).checked_sub(next)?)?;
-        Some((nodes, links))
     }
 }
 
@@ -281,7 +248,7 @@ pub fn subdivide<'m, 'n, P: Point>(
     if ![needs.patches, needs.first, needs.nodes, needs.links].iter().all(Need::met) {
         return Err(SubdivideError::Memory(needs));
     }
-    let tree = wants_tree.then(|| Tree { nodes: nodes.finish(), links: links.finish() });
+    let tree = wants_tree.then(|| Tree::new(nodes.finish(), links.finish()));
     Ok((Patches { patches: patches.finish(), first: first.finish() }, tree))
 }
 

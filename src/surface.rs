@@ -621,17 +621,21 @@ fn jet_unrolled<P: Point, const R: usize, const C: usize, const N: usize>(
     bv: &[[P::Scalar; 2]; C],
 ) -> Jet<P> {
     const { assert!(R * C == N && R > 0 && C > 0) }
-    let mut jet = Jet { point: P::EMPTY, du: P::EMPTY, dv: P::EMPTY };
+    // Along u first: the points of a row stand side by side in memory, and all its coordinates take the same factor.
+    let mut value = [P::EMPTY; C];
+    let mut slope = [P::EMPTY; C];
     for i in 0..R {
-        let mut point = points[i * C] * bv[0][0];
-        let mut dv = points[i * C] * bv[0][1];
-        for j in 1..C {
-            point = point + points[i * C + j] * bv[j][0];
-            dv = dv + points[i * C + j] * bv[j][1];
+        for j in 0..C {
+            let point = points[i * C + j];
+            value[j] = value[j] + point * bu[i][0];
+            slope[j] = slope[j] + point * bu[i][1];
         }
-        jet.point = jet.point + point * bu[i][0];
-        jet.du = jet.du + point * bu[i][1];
-        jet.dv = jet.dv + dv * bu[i][0];
+    }
+    let mut jet = Jet { point: P::EMPTY, du: P::EMPTY, dv: P::EMPTY };
+    for j in 0..C {
+        jet.point = jet.point + value[j] * bv[j][0];
+        jet.du = jet.du + slope[j] * bv[j][0];
+        jet.dv = jet.dv + value[j] * bv[j][1];
     }
     jet
 }

@@ -4,6 +4,7 @@
 //! adding up steps, so that its rounding does not grow along the way.
 
 use crate::grid::{Grid, ITEM_BITS, ITEM_MASK};
+use crate::planes::{DepthRange, Planes};
 use crate::scalar::Scalar;
 
 /// One voxel on the way of a line.
@@ -44,6 +45,20 @@ pub struct Walk<'m, S> {
 }
 
 impl<'m, S: Scalar> Grid<'m, S> {
+    /// The walk of a ray through what of a range of depths lies in the grid's box, and the depth where it begins; `None` if
+    /// the ray passes the grid by.
+    #[inline(always)]
+    pub fn enter(&self, planes: &Planes<S>, range: &DepthRange<S>) -> Option<(Walk<'m, S>, S)> {
+        let (origin, direction, inverse) = (planes.origin(), planes.direction(), planes.inverse());
+        let (near, far) = self.slot.bounds.depths(&origin, &inverse)?;
+        let (begin, end) = (near.greater(range.min), far.lesser(range.max));
+        if !(begin <= end) {
+            return None;
+        }
+        let start = core::array::from_fn(|k| origin[k] + direction[k] * begin);
+        Some((self.walk(&start, &direction, &inverse, end - begin), begin))
+    }
+
     /// The walk along `start + s · direction` for s in [0, `length`]; `inverse` is 1 / `direction` by component. `start`
     /// should be inside the grid, or so near that rounding explains it.
     #[inline(always)]
@@ -69,7 +84,7 @@ impl<'m, S: Scalar> Grid<'m, S> {
             // Walls are counted in the line's direction, from the one behind the first voxel.
             walk.forward[k] = direction[k] > S::ZERO;
             let wall = if walk.forward[k] { walk.at[k] } else { walk.at[k] + 1 };
-            walk.base[k] = (slot.low[k] + S::from_u32(wall) * slot.cell[k] - start[k]) * inverse[k];
+            walk.base[k] = (slot.bounds.low[k] + S::from_u32(wall) * slot.cell[k] - start[k]) * inverse[k];
             walk.step[k] = slot.cell[k] * inverse[k].abs();
             walk.walls[k] = S::ONE;
             walk.next[k] = walk.base[k] + walk.step[k];

@@ -8,13 +8,14 @@
 
 use super::starts::{First, from_patch};
 use super::{ScratchView, keep_closest};
-use crate::limits::{GaveUp, Limit, Limits, Work, spend};
+use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::newton::Root;
 use crate::planes::{DepthRange, Planes};
 use crate::ray::{Hit, Interval, Ray};
 use crate::scene::Scene;
-use crate::subdivide::{Patches, Tree};
+use crate::subdivide::Patches;
 use crate::surface::{Point, Surface};
+use crate::tree::Tree;
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
 ///
@@ -47,30 +48,10 @@ fn search<P: Point>(
     work: &mut Work,
 ) -> Result<Option<Root<P::Scalar>>, Limit> {
     let number = surface.number as usize;
-    let (nodes, links) = tree.of_surface(patches, number).ok_or(Limit::Slot)?;
-    let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
+    let mut descent = tree.of_surface(patches, number).ok_or(Limit::Slot)?;
     let mut best = None;
-    let (mut inner, mut leaf) = (0_usize, 0_usize);
-    // Ends: `inner + leaf`, the place in the pre-order, grows with each step.
-    while let Some(&below) = links.get(inner + leaf) {
-        if below != 1 {
-            let node = nodes.get(inner).ok_or(Limit::Slot)?;
-            spend(&mut work.nodes_visited, limits.nodes, Limit::Nodes)?;
-            match node.crossing(planes) {
-                Some(crossing) if crossing.overlaps(&range) => inner += 1,
-                _ => {
-                    inner = inner.saturating_add((below as usize).checked_sub(1).ok_or(Limit::Slot)?);
-                    leaf = leaf.saturating_add(below as usize);
-                }
-            }
-            continue;
-        }
-        let patch = patches.get(leaf).ok_or(Limit::Slot)?;
-        leaf += 1;
-        spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
-        let Some(crossing) = patch.bounds().crossing(planes) else {
-            continue;
-        };
+    // Ends with the tree.
+    while let Some((patch, crossing)) = descent.next_patch(planes, limits, work)? {
         if !crossing.overlaps(&range) {
             continue;
         }

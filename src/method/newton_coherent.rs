@@ -93,11 +93,7 @@ struct Search<'a, 's, 'm, P: Point> {
 impl<'m, P: Point> Search<'_, '_, 'm, P> {
     /// The point found from the previous one's (u, v), verified or replaced by a closer one; `None` if the surface has to
     /// be searched in full.
-    fn resume(
-        &mut self,
-        previous: Option<[P::Scalar; 2]>,
-        work: &mut Work,
-    ) -> Result<Option<Root<P::Scalar>>, Limit> {
+    fn resume(&mut self, previous: Option<[P::Scalar; 2]>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         let Some(start) = previous else {
             return Ok(None);
         };
@@ -148,10 +144,9 @@ impl<'m, P: Point> Search<'_, '_, 'm, P> {
     /// The closest root by a search of the grid, front to back, that ends where no later voxel can hold a closer one.
     fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         work.full_searches += 1;
-        let (origin, direction) = (self.planes.origin(), self.planes.direction());
-        let begin = self.range.min;
-        let start = core::array::from_fn(|k| origin[k] + direction[k] * begin);
-        let mut walk = self.grid.walk(&start, &direction, &self.planes.inverse(), self.range.max - begin);
+        let Some((mut walk, begin)) = self.grid.enter(self.planes, &self.range) else {
+            return Ok(None);
+        };
         let mut best: Option<Root<P::Scalar>> = None;
         // Ends with the walk.
         while let Some(voxel) = walk.advance() {
