@@ -8,6 +8,7 @@ pub mod file;
 pub mod model;
 pub mod nearest;
 pub mod rays;
+pub mod shapes;
 pub mod source;
 pub mod teapot;
 pub mod trace;

@@ -1,0 +1,314 @@
+//! Shapes with known equations, as Bézier surfaces.
+//!
+//! Round shapes are rational: an arc of angle 2π / k has the control points and weights of L. Piegl and W. Tiller, *The
+//! NURBS Book*, 2nd edition, section 7.3. Their coordinates and weights are rounded to f64, so a shape follows its
+//! equation to about 1e-16 of its size. Neighbours share the bits of their common control points.
+
+use super::model::{Model, ModelSurface};
+
+/// Pseudo-random numbers: SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number
+/// generators", 2014). The same seed gives the same numbers everywhere.
+#[derive(Clone, Debug)]
+pub struct Random(pub u64);
+
+impl Random {
+    /// The next number, evenly spread over `low <= x < high`.
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        low + (high - low) * ((z >> 11) as f64 / (1u64 << 53) as f64)
+    }
+
+    /// The next point of the cube that reaches `half` to either side of 0.
+    pub fn point(&mut self, half: f64) -> [f64; 3] {
+        [0; 3].map(|_| self.within(-half, half))
+    }
+}
+
+fn polynomial(degree_u: usize, degree_v: usize, points: Vec<[f64; 3]>) -> ModelSurface {
+    ModelSurface {
+        degree_u,
+        degree_v,
+        rational: false,
+        points: points.into_iter().map(|[x, y, z]| [x, y, z, 1.0]).collect(),
+    }
+}
+
+/// A model of one surface.
+pub fn single(surface: ModelSurface) -> Model {
+    Model {
+        surfaces: vec![surface],
+    }
+}
+
+/// The bilinear surface with these corners, in the order (u, v) = (0, 0), (0, 1), (1, 0), (1, 1).
+pub fn bilinear(corners: [[f64; 3]; 4]) -> ModelSurface {
+    polynomial(1, 1, corners.to_vec())
+}
+
+/// The parallelogram `corner + u along_u + v along_v`, as a bilinear surface.
+pub fn parallelogram(corner: [f64; 3], along_u: [f64; 3], along_v: [f64; 3]) -> ModelSurface {
+    let at = |u: f64, v: f64| [0, 1, 2].map(|k| corner[k] + u * along_u[k] + v * along_v[k]);
+    bilinear([at(0.0, 0.0), at(0.0, 1.0), at(1.0, 0.0), at(1.0, 1.0)])
+}
+
+/// The paraboloid z = x² + y² over the square of `half_width` about its apex, moved to have its `apex` there; biquadratic.
+pub fn paraboloid(apex: [f64; 3], half_width: f64) -> ModelSurface {
+    let a = half_width;
+    let (line, square) = ([-a, 0.0, a], [a * a, -a * a, a * a]);
+    let mut points = Vec::new();
+    for i in 0..3 {
+        for j in 0..3 {
+            points.push([
+                apex[0] + line[i],
+                apex[1] + line[j],
+                apex[2] + square[i] + square[j],
+            ]);
+        }
+    }
+    polynomial(2, 2, points)
+}
+
+/// A surface of degrees `m`, `n` over a square of side `size` about `centre` in x and y, its control points' heights
+/// spread at random over `height` to either side and its inner points moved sideways by up to a third of their spacing.
+pub fn bumpy(
+    seed: u64,
+    [m, n]: [usize; 2],
+    centre: [f64; 3],
+    size: f64,
+    height: f64,
+) -> ModelSurface {
+    let mut random = Random(seed);
+    let mut points = Vec::new();
+    for i in 0..=m {
+        for j in 0..=n {
+            let mut shift = |k: usize, degree: usize| {
+                let inner = k > 0 && k < degree;
+                let moved = random.within(-1.0, 1.0) / 3.0;
+                (k as f64 + if inner { moved } else { 0.0 }) / degree as f64 - 0.5
+            };
+            let (x, y) = (shift(i, m), shift(j, n));
+            let z = random.within(-height, height);
+            points.push([centre[0] + size * x, centre[1] + size * y, centre[2] + z]);
+        }
+    }
+    polynomial(m, n, points)
+}
+
+/// Control points `(x, y)` and weight of the `number`th of `count` arcs that make up the unit circle; `count` is at least
+/// 3. Neighbours' end points have the same bits, and for 4 arcs all points are exact.
+fn arc(count: usize, number: usize) -> [[f64; 3]; 3] {
+    let angle = |quarters: usize| {
+        // Multiples of a quarter turn are exact.
+        let part = quarters % (2 * count);
+        if (2 * part).is_multiple_of(count) {
+            [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]][(2 * part / count) % 4]
+        } else {
+            let (sin, cos) = (std::f64::consts::PI * part as f64 / count as f64).sin_cos();
+            [cos, sin]
+        }
+    };
+    let weight = (std::f64::consts::PI / count as f64).cos();
+    let [a, c] = [2 * number, 2 * number + 2].map(angle);
+    let b = if count == 4 {
+        [a[0] + c[0], a[1] + c[1]]
+    } else {
+        angle(2 * number + 1).map(|x| x / weight)
+    };
+    [[a[0], a[1], 1.0], [b[0], b[1], weight], [c[0], c[1], 1.0]]
+}
+
+/// The surfaces that a profile in the half-plane (radius, height) sweeps about the vertical axis through `centre`, one per
+/// arc of `around`. The profile's points are `[radius, height, weight]`; u runs along it, v around the axis.
+fn revolve(centre: [f64; 3], profile: &[[f64; 3]], around: usize) -> Vec<ModelSurface> {
+    let surface = |number| {
+        let mut points = Vec::new();
+        for &[radius, height, weight] in profile {
+            for [x, y, w] in arc(around, number) {
+                points.push([
+                    centre[0] + radius * x,
+                    centre[1] + radius * y,
+                    centre[2] + height,
+                    weight * w,
+                ]);
+            }
+        }
+        ModelSurface {
+            degree_u: profile.len() - 1,
+            degree_v: 2,
+            rational: true,
+            points,
+        }
+    };
+    (0..around).map(surface).collect()
+}
+
+/// A sphere of 8 biquadratic octants. Each has an edge collapsed at a pole, the upper four at u = 1, the lower at u = 0.
+pub fn sphere(centre: [f64; 3], radius: f64) -> Model {
+    let mut surfaces = Vec::new();
+    // The quarters of the profile from the equator up and from the south pole to the equator.
+    for number in [0, 3] {
+        let profile = arc(4, number).map(|[x, y, w]| [radius * x, radius * y, w]);
+        surfaces.extend(revolve(centre, &profile, 4));
+    }
+    Model { surfaces }
+}
+
+/// An open cylinder about the vertical axis through `centre`, of `height` half above and half below: 4 surfaces of
+/// degrees 1 along the axis (u, upwards) and 2 around it.
+pub fn cylinder(centre: [f64; 3], radius: f64, height: f64) -> Model {
+    let profile = [[radius, -0.5 * height, 1.0], [radius, 0.5 * height, 1.0]];
+    Model {
+        surfaces: revolve(centre, &profile, 4),
+    }
+}
+
+/// A torus about the vertical axis through `centre`: the circle of radius `minor` swept along that of radius `major`, of
+/// `around` surfaces along the great circle and `across` along the small one, each count at least 3; biquadratic.
+pub fn torus(centre: [f64; 3], major: f64, minor: f64, around: usize, across: usize) -> Model {
+    let mut surfaces = Vec::new();
+    for number in 0..across {
+        let profile = arc(across, number).map(|[x, y, w]| [major + minor * x, minor * y, w]);
+        surfaces.extend(revolve(centre, &profile, around));
+    }
+    Model { surfaces }
+}
+
+/// The same surface with degrees raised to `m` and `n`, each at least its own (Farin, section 5.1).
+pub fn elevate(surface: &ModelSurface, m: usize, n: usize) -> ModelSurface {
+    let raise = |row: Vec<[f64; 4]>| {
+        let degree = row.len();
+        let mut raised = vec![row[0]];
+        for i in 1..degree {
+            let part = i as f64 / degree as f64;
+            raised.push([0, 1, 2, 3].map(|k| part * row[i - 1][k] + (1.0 - part) * row[i][k]));
+        }
+        raised.push(row[degree - 1]);
+        raised
+    };
+    let transpose = |rows: Vec<Vec<[f64; 4]>>| -> Vec<Vec<[f64; 4]>> {
+        (0..rows[0].len())
+            .map(|j| rows.iter().map(|row| row[j]).collect())
+            .collect()
+    };
+    let to = |rows: Vec<Vec<[f64; 4]>>, degree: usize| -> Vec<Vec<[f64; 4]>> {
+        let raise_to = |mut row: Vec<[f64; 4]>| {
+            // Ends since each turn adds a point.
+            while row.len() <= degree {
+                row = raise(row);
+            }
+            row
+        };
+        rows.into_iter().map(raise_to).collect()
+    };
+    let homogeneous = |&[x, y, z, w]: &[f64; 4]| [x * w, y * w, z * w, w];
+    let rows = surface
+        .points
+        .chunks(surface.degree_v + 1)
+        .map(|row| row.iter().map(homogeneous).collect())
+        .collect();
+    let raised = transpose(to(transpose(to(rows, n)), m));
+    ModelSurface {
+        degree_u: m,
+        degree_v: n,
+        rational: surface.rational,
+        points: raised
+            .into_iter()
+            .flatten()
+            .map(|[x, y, z, w]| [x / w, y / w, z / w, w])
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The point of a surface at (u, v), by the definition of the Bernstein polynomials.
+    fn point(surface: &ModelSurface, u: f64, v: f64) -> [f64; 3] {
+        let bernstein = |n: usize, k: usize, t: f64| {
+            let choose = (0..k).fold(1.0, |c, j| c * (n - j) as f64 / (j + 1) as f64);
+            choose * t.powi(k as i32) * (1.0 - t).powi((n - k) as i32)
+        };
+        let mut sum = [0.0; 4];
+        for i in 0..=surface.degree_u {
+            for j in 0..=surface.degree_v {
+                let [x, y, z, w] = surface.points[i * (surface.degree_v + 1) + j];
+                let b = w * bernstein(surface.degree_u, i, u) * bernstein(surface.degree_v, j, v);
+                for (s, x) in sum.iter_mut().zip([x, y, z, 1.0]) {
+                    *s += b * x;
+                }
+            }
+        }
+        [0, 1, 2].map(|k| sum[k] / sum[3])
+    }
+
+    /// Checks that `equation` vanishes all over `model`, to 1e-14.
+    fn check(model: &Model, surfaces: usize, equation: impl Fn([f64; 3]) -> f64) {
+        assert_eq!(model.surfaces.len(), surfaces);
+        for surface in &model.surfaces {
+            for i in 0..=8 {
+                for j in 0..=8 {
+                    let residual = equation(point(surface, i as f64 / 8.0, j as f64 / 8.0));
+                    assert!(residual.abs() < 1e-14, "{residual}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn shapes_obey_their_equations() {
+        let c = [0.5, -1.0, 2.0];
+        let from = |p: [f64; 3]| [p[0] - c[0], p[1] - c[1], p[2] - c[2]];
+        check(&sphere(c, 1.5), 8, |p| {
+            let [x, y, z] = from(p);
+            (x * x + y * y + z * z).sqrt() - 1.5
+        });
+        check(&cylinder(c, 0.75, 2.0), 4, |p| {
+            let [x, y, _] = from(p);
+            x.hypot(y) - 0.75
+        });
+        for (around, across) in [(4, 4), (3, 5), (8, 3)] {
+            check(&torus(c, 2.0, 0.5, around, across), around * across, |p| {
+                let [x, y, z] = from(p);
+                (x.hypot(y) - 2.0).hypot(z) - 0.5
+            });
+        }
+        check(&single(paraboloid(c, 1.25)), 1, |p| {
+            let [x, y, z] = from(p);
+            z - x * x - y * y
+        });
+    }
+
+    #[test]
+    fn arcs_go_all_the_way_round() {
+        for count in 3..9 {
+            for number in 0..count {
+                let end = arc(count, number)[2];
+                let start = arc(count, (number + 1) % count)[0];
+                assert_eq!(end.map(f64::to_bits)[..2], start.map(f64::to_bits)[..2]);
+            }
+        }
+    }
+
+    #[test]
+    fn raising_the_degree_leaves_the_surface() {
+        for surface in [
+            &sphere([0.0; 3], 1.0).surfaces[2],
+            &bumpy(7, [3, 2], [0.0; 3], 2.0, 0.5),
+        ] {
+            let raised = elevate(surface, 7, 15);
+            assert_eq!(
+                (raised.degree_u, raised.degree_v, raised.points.len()),
+                (7, 15, 128)
+            );
+            for (u, v) in [(0.0, 0.0), (0.3, 0.9), (1.0, 0.5)] {
+                let (a, b) = (point(surface, u, v), point(&raised, u, v));
+                assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-14));
+            }
+        }
+    }
+}
