@@ -1,0 +1,145 @@
+//! Proof that a domain holds at most one root: its preconditioned Jacobian stays near the identity.
+//!
+//! With A the inverse of the mean Jacobian of the homogeneous plane distances F and q the largest row sum of |I − A J|
+//! over the Bernstein coefficients of J, q < 1 makes A F injective on the domain, since x − A F(x) contracts by q.
+//! Source: R. Krawczyk, "Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4 (1969), with
+//! the convex hull of the coefficients in place of an interval extension.
+
+use super::net::{Degrees, Point};
+
+/// What the derivative coefficients of a net say, in parameters that run from 0 to 1 over its domain.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Derivatives {
+    /// The inverse of the mean Jacobian, row by row; meaningless if `contraction` is infinite.
+    pub(super) inverse: [[f64; 2]; 2],
+    /// q, rounding included: below 1, the net holds at most one root. Infinite if the mean Jacobian is singular.
+    pub(super) contraction: f64,
+    /// The largest difference between a derivative coefficient and its mean.
+    pub(super) variation: f64,
+    /// A bound on the rounding error of a derivative coefficient.
+    pub(super) rounding: f64,
+}
+
+impl Derivatives {
+    /// The largest row sum of |A|.
+    pub(super) fn inverse_norm(&self) -> f64 {
+        let [a, b] = self.inverse.map(|row| row[0].abs() + row[1].abs());
+        if a > b { a } else { b }
+    }
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The differences of neighbouring control points along u, then along v, times the degree.
+fn coefficients(degrees: Degrees, net: &[Point], mut each: impl FnMut(usize, [f64; 2])) {
+    let Degrees { m, n } = degrees;
+    let difference =
+        |a: Point, b: Point, degree: usize| [0, 1].map(|k| degree as f64 * (b[k] - a[k]));
+    for i in 0..m {
+        for j in 0..=n {
+            let at = i * (n + 1) + j;
+            each(0, difference(net[at], net[at + n + 1], m));
+        }
+    }
+    for i in 0..=m {
+        for j in 0..n {
+            let at = i * (n + 1) + j;
+            each(1, difference(net[at], net[at + 1], n));
+        }
+    }
+}
+
+/// The mean derivatives of the two homogeneous plane distances. All Bernstein polynomials of a degree have the same
+/// integral, so the mean of the coefficients is the mean over the domain; inner differences cancel.
+pub(super) fn mean_derivatives(degrees: Degrees, net: &[Point]) -> [[f64; 2]; 2] {
+    let Degrees { m, n } = degrees;
+    let mut mean = [[0.0; 2]; 2];
+    for k in 0..2 {
+        for j in 0..=n {
+            mean[0][k] += (net[m * (n + 1) + j][k] - net[j][k]) / (n + 1) as f64;
+        }
+        for i in 0..=m {
+            mean[1][k] += (net[i * (n + 1) + n][k] - net[i * (n + 1)][k]) / (m + 1) as f64;
+        }
+    }
+    mean
+}
+
+/// The derivatives of `net`, whose homogeneous coefficients are exact to within `error`.
+pub(super) fn derivatives(
+    degrees: Degrees,
+    net: &[Point],
+    mean: [[f64; 2]; 2],
+    error: f64,
+) -> Derivatives {
+    let rounding = 2.0 * degrees.highest() as f64 * error;
+    let [u, v] = mean;
+    let determinant = u[0] * v[1] - u[1] * v[0];
+    let size = (u[0].abs() + u[1].abs()) * (v[0].abs() + v[1].abs());
+    let regular = determinant.abs() > 4.0 * f64::EPSILON * size;
+    let inverse = [
+        [v[1] / determinant, -v[0] / determinant],
+        [-u[1] / determinant, u[0] / determinant],
+    ];
+    let mut largest = [[0.0; 2]; 2];
+    let mut variation = 0.0;
+    coefficients(degrees, net, |column, d| {
+        for row in 0..2 {
+            let identity = if row == column { 1.0 } else { 0.0 };
+            let product = inverse[row][0] * d[0] + inverse[row][1] * d[1];
+            largest[row][column] = larger((product - identity).abs(), largest[row][column]);
+            variation = larger((d[row] - mean[column][row]).abs(), variation);
+        }
+    });
+    let mut result = Derivatives {
+        inverse,
+        contraction: f64::INFINITY,
+        variation,
+        rounding,
+    };
+    if regular {
+        let rows = largest.map(|row| row[0] + row[1]);
+        result.contraction = larger(rows[0], rows[1]) + 2.0 * rounding * result.inverse_norm();
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The plane distances (u + k u v, v) of a bilinear net.
+    fn sheared(k: f64) -> Vec<Point> {
+        let point = |u: f64, v: f64| [u + k * u * v, v, 0.0, 1.0];
+        vec![
+            point(0.0, 0.0),
+            point(0.0, 1.0),
+            point(1.0, 0.0),
+            point(1.0, 1.0),
+        ]
+    }
+
+    fn contraction(net: &[Point]) -> f64 {
+        let degrees = Degrees { m: 1, n: 1 };
+        derivatives(degrees, net, mean_derivatives(degrees, net), 0.0).contraction
+    }
+
+    #[test]
+    fn an_affine_net_has_none_and_a_bilinear_one_its_twist() {
+        assert!(contraction(&sheared(0.0)) < 1e-15);
+        // J = [[1 + k v, k u], [0, 1]] with mean [[1 + k/2, k/2], [0, 1]]: both deviations are k/2 over 1 + k/2.
+        let k = 0.4;
+        assert!((contraction(&sheared(k)) - k / (1.0 + 0.5 * k)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_net_that_folds_over_is_not_called_injective() {
+        // The determinant 1 + k v changes its sign at v = 1/2.
+        assert!(contraction(&sheared(-2.0)) >= 1.0);
+        assert!(contraction(&sheared(-1.5)) >= 1.0);
+        let flat = vec![[0.0, 1.0, 0.0, 1.0]; 4];
+        assert_eq!(contraction(&flat), f64::INFINITY);
+    }
+}

@@ -1,0 +1,274 @@
+//! The slow truth: all roots of a ray on all surfaces of a model, and how safe the answer is.
+//!
+//! The oracle shares nothing with the methods that it judges: it reads the file's control points, and has its own
+//! evaluation, halving and proofs, in f64. Per ray and surface it projects the control points on two planes that contain
+//! the ray and halves the parameter domain until each part is proved to hold no root ([`exclusion`]), is proved to hold at
+//! most one ([`injectivity`]), which is then found or disproved ([`contraction`]), or varies by no more than rounding.
+//! A double root cannot be certified in floating point: such a part is counted as unresolved, never dropped.
+
+mod contraction;
+mod edges;
+mod exclusion;
+mod frame;
+mod injectivity;
+mod net;
+mod surface;
+
+use crate::scene::model::{Model, ModelSurface};
+use edges::{EDGES, Edges};
+use frame::{EPS, Frame};
+use net::Degrees;
+use surface::{Findings, Found, Ray, Surface};
+
+/// A root: a point where the ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Root {
+    /// The ray's parameter, in units of its direction.
+    pub t: f64,
+    /// The surface's parameter u, from 0 to 1. At a collapsed edge, any of those that name the point.
+    pub u: f64,
+    /// The surface's parameter v, from 0 to 1.
+    pub v: f64,
+    /// The surface's number in the model, from 0. Where several surfaces meet, one of them.
+    pub surface: usize,
+    /// How far, to first order, the ray may move sideways before this root ends, in units of the model's diagonal, at
+    /// most 1: the least of the distance to the silhouette, c² / 2κ (c the cosine between ray and normal, κ the normal
+    /// curvature along the tangent nearest to the ray), and the distances, as the ray sees them, to those edges of its
+    /// surface where no other surface carries on. 0 where there is no normal.
+    pub margin: f64,
+    /// How far the root may be off along the ray by rounding, in units of the model's diagonal.
+    pub blur: f64,
+}
+
+/// What a ray meets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// All roots with t in the range asked for, sorted by t.
+    ///
+    /// Roots no farther apart along the ray than their blurs are one root, that of the largest margin: a root on a seam,
+    /// found from either side; one on surfaces that coincide; one at a pole.
+    pub roots: Vec<Root>,
+    /// How safe the answer "this is the closest hit" or "there is none" is: how far the ray may be displaced, to first
+    /// order and in units of the model's diagonal, before the answer may change in kind. The least of
+    /// - the closest root's own margin;
+    /// - how far the ray must move before the second root is as close: the difference in depth, divided by the sum of
+    ///   both roots' slopes where that exceeds 1;
+    /// - the clearances of all parts of the surfaces, no farther away than the closest root, that hold no root but would
+    ///   gain one by a displacement: parts with a fold, or that touch an outer border, or whose whole surface is passed;
+    /// - the distance along the ray from a root outside the range of t to that range;
+    /// - 0, if an unresolved part may be closer than the closest root.
+    ///
+    /// Clearances are lower bounds by convex hulls, so an ordinary ray's margin may be some 1/1000, whatever it passes.
+    /// Below 1e-12 the answer cannot be judged in f64. A surface that meets its neighbour without sharing control points
+    /// to within rounding has an outer border there.
+    pub margin: f64,
+    /// Domains that ended neither with a root nor excluded: tangencies, surfaces seen edge on, work beyond the bound on
+    /// domains per ray and surface; and surfaces that are invalid. A ray that is invalid has 1, and margin 0.
+    pub unresolved: usize,
+}
+
+/// All surfaces of a model, made ready for any number of rays; shared by threads.
+#[derive(Clone, Debug)]
+pub struct Oracle {
+    surfaces: Vec<Surface>,
+    edges: Edges,
+    centre: [f64; 3],
+    diagonal: f64,
+    /// Surfaces that no ray can be judged against.
+    invalid: usize,
+}
+
+/// The bounding box of points, as its least and greatest corner.
+fn bounds<'a>(points: impl Iterator<Item = &'a [f64; 4]>) -> [[f64; 3]; 2] {
+    let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for p in points {
+        for k in 0..3 {
+            corners[0][k] = f64::min(corners[0][k], p[k]);
+            corners[1][k] = f64::max(corners[1][k], p[k]);
+        }
+    }
+    corners
+}
+
+fn is_valid(surface: &ModelSurface) -> bool {
+    let degrees = 1..net::MAX_ORDER;
+    degrees.contains(&surface.degree_u)
+        && degrees.contains(&surface.degree_v)
+        && surface.points.len() == (surface.degree_u + 1) * (surface.degree_v + 1)
+        // The cube of a coordinate or a product of weights must not leave the range of f64.
+        && surface.points.iter().all(|p| {
+            p[..3].iter().all(|x| x.abs() <= 1e100) && p[3] >= 1e-100 && p[3] <= 1e100
+        })
+}
+
+impl Oracle {
+    /// Makes `model` ready. A surface with degrees outside 1 to 15, too few or too many points, a coordinate beyond
+    /// ±1e100 or a weight outside 1e-100 to 1e100 is invalid: it is left out and counted in every verdict as unresolved.
+    pub fn new(model: &Model) -> Oracle {
+        let valid: Vec<(usize, &ModelSurface)> = model
+            .surfaces
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| is_valid(s))
+            .collect();
+        let all = bounds(valid.iter().flat_map(|(_, s)| &s.points));
+        let largest = all
+            .iter()
+            .flatten()
+            .fold(0.0, |m, x| if x.abs() > m { x.abs() } else { m });
+        let mut surfaces = Vec::new();
+        for (place, (number, surface)) in valid.iter().enumerate() {
+            let heaviest = surface.points.iter().fold(0.0, |m, p| f64::max(m, p[3]));
+            let scale = heaviest.log2().ceil().exp2();
+            let points = surface
+                .points
+                .iter()
+                .map(|p| [p[0], p[1], p[2], p[3] / scale])
+                .collect();
+            let [low, high] = bounds(surface.points.iter());
+            surfaces.push(Surface {
+                number: *number,
+                first_edge: EDGES * place,
+                degrees: Degrees {
+                    m: surface.degree_u,
+                    n: surface.degree_v,
+                },
+                points,
+                centre: [0, 1, 2].map(|k| 0.5 * (low[k] + high[k])),
+                half: [0, 1, 2].map(|k| 0.5 * (high[k] - low[k])),
+            });
+        }
+        let nets = surfaces.iter().map(|s| (s.degrees, &s.points[..]));
+        let edges = Edges::new(nets, 4.0 * EPS * largest);
+        let [low, high] = all;
+        let diagonal = [0, 1, 2]
+            .map(|k| (high[k] - low[k]).powi(2))
+            .iter()
+            .sum::<f64>()
+            .sqrt();
+        Oracle {
+            invalid: model.surfaces.len() - surfaces.len(),
+            centre: if surfaces.is_empty() {
+                [0.0; 3]
+            } else {
+                [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]))
+            },
+            // A model that is a single point has no extent to measure by.
+            diagonal: if diagonal > 0.0 { diagonal } else { 1.0 },
+            surfaces,
+            edges,
+        }
+    }
+
+    /// All roots of the ray `origin + t direction` with `t_min <= t <= t_max`, which may be infinite. The direction may
+    /// have any length. Work is bounded: 20,000 domains per surface.
+    pub fn trace(&self, origin: [f64; 3], direction: [f64; 3], t_min: f64, t_max: f64) -> Verdict {
+        let frame = Frame::new(origin, direction, self.centre);
+        let Some(frame) = frame.filter(|_| !t_min.is_nan() && !t_max.is_nan()) else {
+            return Verdict {
+                roots: Vec::new(),
+                margin: 0.0,
+                unresolved: 1,
+            };
+        };
+        let ray = Ray {
+            frame: &frame,
+            edges: &self.edges,
+            range: [t_min, t_max].map(|t| frame.depth(t)),
+            diagonal: self.diagonal,
+        };
+        let mut findings = Findings::default();
+        for surface in &self.surfaces {
+            ray.search(surface, &mut findings);
+        }
+        self.judge(&frame, findings, [t_min, t_max], ray.range)
+    }
+
+    /// The verdict on what was found.
+    fn judge(
+        &self,
+        frame: &Frame,
+        mut findings: Findings,
+        times: [f64; 2],
+        range: [f64; 2],
+    ) -> Verdict {
+        findings.roots.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+        let mut merged: Vec<Found> = Vec::new();
+        for root in findings.roots {
+            match merged.last_mut() {
+                Some(last) if root.depth - last.depth <= last.blur + root.blur => {
+                    if root.margin > last.margin {
+                        *last = root;
+                    }
+                }
+                _ => merged.push(root),
+            }
+        }
+
+        let mut margin = self.diagonal;
+        let mut limit = |x: f64| {
+            // NaN limits to 0: what cannot be computed is not safe.
+            if x.is_nan() || x < margin {
+                margin = if x > 0.0 { x } else { 0.0 };
+            }
+        };
+        let mut inside = Vec::new();
+        for root in &merged {
+            let t = frame.parameter(root.depth);
+            if t >= times[0] && t <= times[1] {
+                inside.push(*root);
+            }
+        }
+        // How deep the answer looks: parts that begin beyond the closest root cannot change it.
+        let deepest = inside.first().map_or(range[1], |r| r.depth + r.blur);
+        for root in &merged {
+            let near = root.depth <= deepest || inside.is_empty();
+            let t = frame.parameter(root.depth);
+            if near && t < times[0] {
+                limit(range[0] - root.depth);
+            } else if near && t > times[1] {
+                limit(root.depth - range[1]);
+            }
+        }
+        if let Some(closest) = inside.first() {
+            limit(closest.margin);
+            limit(closest.depth - range[0]);
+            limit(range[1] - closest.depth);
+        }
+        if let [closest, second, ..] = inside[..] {
+            let slope = |r: Found| (1.0 - r.cosine * r.cosine).sqrt() / r.cosine;
+            let slopes = slope(closest) + slope(second);
+            limit((second.depth - closest.depth) / if slopes > 1.0 { slopes } else { 1.0 });
+        }
+        for clearance in &findings.clearances {
+            if clearance.depth <= deepest || inside.is_empty() {
+                limit(clearance.gap);
+            }
+        }
+        if self.invalid > 0
+            || findings
+                .unresolved
+                .iter()
+                .any(|&d| d <= deepest || inside.is_empty())
+        {
+            limit(0.0);
+        }
+
+        let roots = inside.iter().map(|r| Root {
+            t: frame.parameter(r.depth),
+            u: r.uv[0],
+            v: r.uv[1],
+            surface: r.surface,
+            margin: r.margin / self.diagonal,
+            blur: r.blur / self.diagonal,
+        });
+        Verdict {
+            roots: roots.collect(),
+            margin: margin / self.diagonal,
+            unresolved: findings.unresolved.len() + self.invalid,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
