@@ -56,24 +56,33 @@ pub(super) fn content(
     // No step can be told from zero below this: the error of F through A, and that of the surface's parameters.
     let floor = d.inverse_norm() * error + 2.0 * f64::EPSILON / coarsest;
 
-    // Newton from the centre: if it converges within the domain, that is the one root.
-    let mut x = [0.5; 2];
-    for _ in 0..NEWTON_STEPS {
+    let newton = |x: [f64; 2]| {
         let jet = evaluate(x);
         let [a, b] = [0, 1].map(|k| jet.first[k].map(|y| y * domain.size[k]));
         let f = jet.point;
         let determinant = a[0] * b[1] - a[1] * b[0];
-        let step = [
+        [
             (f[0] * b[1] - f[1] * b[0]) / determinant,
             (a[0] * f[1] - a[1] * f[0]) / determinant,
-        ];
+        ]
+    };
+    let small = |step: [f64; 2], part: f64| step.iter().all(|s| s.abs() <= part * floor);
+
+    // Newton from the centre: if it settles within the domain, that is the one root. The step after a small one brings
+    // the digits that the floor, a bound for the whole domain, does not promise.
+    let mut x = [0.5; 2];
+    let mut settled = false;
+    for _ in 0..NEWTON_STEPS {
+        let step = newton(x);
         x = [x[0] - step[0], x[1] - step[1]];
-        let inside = x.iter().all(|y| (0.0..=1.0).contains(y));
-        if step[0].abs() <= 2.0 * floor && step[1].abs() <= 2.0 * floor {
-            if inside {
-                return Content::Root(domain.at(x));
+        if small(step, 2.0) {
+            if settled {
+                if x.iter().all(|y| (0.0..=1.0).contains(y)) {
+                    return Content::Root(domain.at(x));
+                }
+                break;
             }
-            break;
+            settled = true;
         }
         if !x.iter().all(|y| (-1.0..=2.0).contains(y)) {
             break;
@@ -97,6 +106,10 @@ pub(super) fn content(
         if outside > radius {
             return Content::Nothing((outside - radius) / d.inverse_norm());
         }
+    }
+    let step = newton(x);
+    if small(step, 16.0) {
+        x = [x[0] - step[0], x[1] - step[1]];
     }
     Content::Root(domain.at(x))
 }

@@ -14,6 +14,8 @@ pub(super) struct Derivatives {
     pub(super) inverse: [[f64; 2]; 2],
     /// q, rounding included: below 1, the net holds at most one root. Infinite if the mean Jacobian is singular.
     pub(super) contraction: f64,
+    /// A bound on the sum of the two derivatives of the weight.
+    pub(super) weight_slope: f64,
     /// The largest difference between a derivative coefficient and its mean.
     pub(super) variation: f64,
     /// A bound on the rounding error of a derivative coefficient.
@@ -26,17 +28,29 @@ impl Derivatives {
         let [a, b] = self.inverse.map(|row| row[0].abs() + row[1].abs());
         if a > b { a } else { b }
     }
+
+    /// How far the ray may move sideways with the net still proved to hold at most one root, given that it is so now.
+    ///
+    /// Moving it by δ takes δ w from F, and so δ ∇w from J: nothing for a polynomial net, which stays as it is for any δ.
+    pub(super) fn steadiness(&self) -> f64 {
+        if self.weight_slope > 0.0 {
+            (1.0 - self.contraction) / (self.inverse_norm() * self.weight_slope)
+        } else {
+            f64::INFINITY
+        }
+    }
 }
 
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The differences of neighbouring control points along u, then along v, times the degree.
-fn coefficients(degrees: Degrees, net: &[Point], mut each: impl FnMut(usize, [f64; 2])) {
+/// The differences of neighbouring control points along u, then along v, times the degree: of the two plane distances
+/// and of the weight.
+fn coefficients(degrees: Degrees, net: &[Point], mut each: impl FnMut(usize, [f64; 3])) {
     let Degrees { m, n } = degrees;
     let difference =
-        |a: Point, b: Point, degree: usize| [0, 1].map(|k| degree as f64 * (b[k] - a[k]));
+        |a: Point, b: Point, degree: usize| [0, 1, 3].map(|k| degree as f64 * (b[k] - a[k]));
     for i in 0..m {
         for j in 0..=n {
             let at = i * (n + 1) + j;
@@ -85,7 +99,9 @@ pub(super) fn derivatives(
     ];
     let mut largest = [[0.0; 2]; 2];
     let mut variation = 0.0;
+    let mut weight_slopes = [0.0; 2];
     coefficients(degrees, net, |column, d| {
+        weight_slopes[column] = larger(d[2].abs(), weight_slopes[column]);
         for row in 0..2 {
             let identity = if row == column { 1.0 } else { 0.0 };
             let product = inverse[row][0] * d[0] + inverse[row][1] * d[1];
@@ -96,6 +112,7 @@ pub(super) fn derivatives(
     let mut result = Derivatives {
         inverse,
         contraction: f64::INFINITY,
+        weight_slope: weight_slopes[0] + weight_slopes[1],
         variation,
         rounding,
     };

@@ -22,6 +22,10 @@ const MAX_CONTRACTION: f64 = 0.5;
 /// part of the domain's extent: a larger part makes margins nearer to the true distances and takes more halvings.
 const CLEAR_PART: f64 = 1.0 / 64.0;
 
+/// A domain no farther from the ray than this many times its error and degree is one point, which the ray meets: a pole
+/// met head on. More stops earlier, with a root less sharp.
+const POINT_PART: f64 = 64.0;
+
 /// Clearances of this part of the diagonal or more count without asking whether they matter. A smaller one is less
 /// work; margins are told apart only below it.
 const AMPLE_PART: f64 = 1.0 / 1024.0;
@@ -75,6 +79,15 @@ pub(super) struct Findings {
     pub(super) unresolved: Vec<f64>,
     /// Domains examined.
     pub(super) domains: usize,
+}
+
+impl Findings {
+    /// Notes a part that begins at `depth` and that the ray must move by `gap` to meet otherwise than it does.
+    fn clear(&mut self, gap: f64, depth: f64) {
+        if gap.is_finite() {
+            self.clearances.push(Clearance { gap, depth });
+        }
+    }
 }
 
 /// A ray and what it is traced through.
@@ -191,52 +204,55 @@ impl Ray<'_> {
             let mean = mean_derivatives(degrees, &current);
             let gap = widest_gap(&distances, mean, ample);
             if gap.width > 3.0 * error {
-                let clearance = Clearance {
-                    gap: gap.width,
-                    depth: depths[0],
-                };
                 if gap.width >= ample {
-                    findings.clearances.push(clearance);
+                    findings.clear(gap.width, depths[0]);
                     continue;
                 }
                 // A root can enter a regular part only from a part beside it or across a border that nothing continues.
                 let d = derivatives(degrees, &current, mean, error * weight);
-                if d.contraction < 1.0 && self.continues(surface, domain) {
+                if d.contraction < 1.0
+                    && d.steadiness() >= gap.width
+                    && self.continues(surface, domain)
+                {
+                    findings.clear(d.steadiness(), depths[0]);
                     continue;
                 }
                 if gap.width >= CLEAR_PART * gap.extent || axis.is_none() {
-                    findings.clearances.push(clearance);
+                    findings.clear(gap.width, depths[0]);
                     continue;
                 }
             } else {
                 let beyond = f64::max(self.range[0] - depths[1], depths[0] - self.range[1]);
                 if beyond > 3.0 * error {
-                    findings.clearances.push(Clearance {
-                        gap: beyond,
-                        depth: depths[0],
-                    });
+                    findings.clear(beyond, depths[0]);
                     continue;
                 }
                 let d = derivatives(degrees, &current, mean, error * weight);
                 if d.contraction <= MAX_CONTRACTION {
                     match content(degrees, &net, domain, &d, evaluation * weight) {
-                        Content::Root(uv) => findings
-                            .roots
-                            .push(self.root(surface, &net, uv, evaluation)),
+                        Content::Root(uv) => {
+                            findings
+                                .roots
+                                .push(self.root(surface, &net, uv, evaluation));
+                        }
                         Content::Nothing(gap) if !self.continues(surface, domain) => {
-                            findings.clearances.push(Clearance {
-                                gap: gap / weight,
-                                depth: depths[0],
-                            });
+                            findings.clear(gap / weight, depths[0]);
                         }
                         Content::Nothing(_) => {}
                     }
+                    findings.clear(d.steadiness(), depths[0]);
                     continue;
                 }
-                // All that the map of this domain varies by is rounding: halving it again would tell nothing.
-                if d.variation <= 8.0 * d.rounding || axis.is_none() {
-                    if farthest <= 64.0 * degrees.highest() as f64 * error {
-                        let mut root = self.root(surface, &net, domain.at([0.5; 2]), evaluation);
+                // All that the map of this domain varies by is rounding: halving it again would tell nothing, unless it
+                // is about to be no more than a point.
+                let point = POINT_PART * degrees.highest() as f64 * error;
+                if axis.is_none()
+                    || d.variation <= 8.0 * d.rounding
+                        && !(farthest > point && farthest <= 64.0 * point)
+                {
+                    if farthest <= point {
+                        let uv = nearest_point(degrees, &net, domain);
+                        let mut root = self.root(surface, &net, uv, evaluation);
                         root.blur = f64::max(root.blur, depths[1] - depths[0]);
                         root.margin = 0.0;
                         findings.roots.push(root);
@@ -355,6 +371,21 @@ impl Ray<'_> {
             margin,
         }
     }
+}
+
+/// The parameters of the corner, the middle of a side, or the centre of `domain` that is nearest to the ray. A collapsed
+/// edge that the ray meets is one of the sides.
+fn nearest_point(degrees: Degrees, net: &[Point], domain: Domain) -> [f64; 2] {
+    let mut best = (f64::INFINITY, [0.0; 2]);
+    for k in 0..9 {
+        let uv = domain.at([0.5 * (k / 3) as f64, 0.5 * (k % 3) as f64]);
+        let p = surface_jet(degrees, net, uv[0], uv[1]).point;
+        let distance = p[0].hypot(p[1]) / p[3];
+        if distance < best.0 {
+            best = (distance, uv);
+        }
+    }
+    best.1
 }
 
 /// The direction in which to halve: the one along which the net is longer in space, unless its domain is too short for
