@@ -35,6 +35,9 @@ pub(super) enum Content {
 /// Newton steps before the fixed-matrix iteration takes over: a domain with q ≤ 1/2 converges in about 5.
 const NEWTON_STEPS: usize = 12;
 
+/// Steps with the fixed matrix: enough to halve the radius from 1/2 to the least floor.
+const MATRIX_STEPS: usize = 53;
+
 /// Finds what `domain` holds, its derivative coefficients having q ≤ 1/2. `error` bounds the rounding error of a
 /// homogeneous plane distance on the domain when evaluated on `net`, the whole surface's.
 pub(super) fn content(
@@ -89,10 +92,13 @@ pub(super) fn content(
         }
     }
 
-    // Ends when the radius, at least halved by every step, is at the floor: about 53 steps.
+    // Ends when the radius, halved by every step but for the floor, is near it; the floor is above 2⁻⁵².
     let mut x = [0.5; 2];
     let mut radius = 0.5;
-    while radius > 4.0 * floor {
+    for _ in 0..MATRIX_STEPS {
+        if radius <= 4.0 * floor {
+            break;
+        }
         let f = evaluate(x).point;
         radius = d.contraction * radius + floor;
         let mut outside = 0.0;

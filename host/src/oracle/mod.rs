@@ -12,13 +12,15 @@ mod exclusion;
 mod frame;
 mod injectivity;
 mod net;
+mod root;
 mod surface;
 
 use crate::scene::model::{Model, ModelSurface};
 use edges::{EDGES, Edges};
 use frame::{EPS, Frame};
 use net::Degrees;
-use surface::{Findings, Found, Ray, Surface};
+use root::Found;
+use surface::{Findings, Ray, Surface};
 
 /// A root: a point where the ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

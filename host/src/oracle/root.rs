@@ -1,0 +1,129 @@
+//! What is to be known of a root once it is found: its depth, its angle to the ray, and how far it is from its end.
+//!
+//! Derivatives of a rational surface by the quotient rule (Farin, section 13.3); the distance to the silhouette from the
+//! normal curvature, as of a circle of curvature seen from outside.
+
+use super::contraction::Domain;
+use super::edges::EDGES;
+use super::net::{Degrees, Point, surface_jet};
+use super::surface::{Ray, Surface, norm};
+
+/// A root of one surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    pub(super) surface: usize,
+    pub(super) uv: [f64; 2],
+    pub(super) depth: f64,
+    /// How far `depth` may be off by rounding.
+    pub(super) blur: f64,
+    /// The cosine of the angle between ray and normal; 0 if there is no normal.
+    pub(super) cosine: f64,
+    /// How far the ray may move sideways before this root ends, in lengths: see [`super::Root::margin`].
+    pub(super) margin: f64,
+}
+
+impl Ray<'_> {
+    /// The root at `uv`, with its margin; `error` bounds the error of an evaluation, per unit of weight.
+    pub(super) fn measure(
+        &self,
+        surface: &Surface,
+        net: &[Point],
+        uv: [f64; 2],
+        error: f64,
+    ) -> Found {
+        let jet = surface_jet(surface.degrees, net, uv[0], uv[1]);
+        let w = jet.point[3];
+        let point = [0, 1, 2].map(|k| jet.point[k] / w);
+        // The quotient rule, for the first derivatives and then for the second.
+        let first = jet
+            .first
+            .map(|d| [0, 1, 2].map(|k| (d[k] - d[3] * point[k]) / w));
+        let second = [(0, 0), (0, 1), (1, 1)].map(|(a, b)| {
+            let d = jet.second[a + b];
+            [0, 1, 2].map(|k| {
+                (d[k]
+                    - d[3] * point[k]
+                    - jet.first[a][3] * first[b][k]
+                    - jet.first[b][3] * first[a][k])
+                    / w
+            })
+        });
+        let [a, b] = first;
+        let normal = [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ];
+        let area = norm(normal);
+        let cosine = if area > 0.0 {
+            normal[2].abs() / area
+        } else {
+            0.0
+        };
+
+        // The fold: along the tangent T nearest to the ray the surface turns away with its curvature there.
+        let [nx, ny, nz] = normal.map(|x| x / area);
+        let sine = (nx * nx + ny * ny).sqrt();
+        // T = (e_z − n_z n) / |..|, in parameters: (T × S_v · n, S_u × T · n) / |S_u × S_v|.
+        let tangent = [-nz * nx / sine, -nz * ny / sine, sine];
+        let triple = |p: [f64; 3], q: [f64; 3]| {
+            ((p[1] * q[2] - p[2] * q[1]) * nx
+                + (p[2] * q[0] - p[0] * q[2]) * ny
+                + (p[0] * q[1] - p[1] * q[0]) * nz)
+                / area
+        };
+        let (ku, kv) = (triple(tangent, b), triple(a, tangent));
+        let curvature = [0, 1, 2]
+            .map(|k| second[0][k] * ku * ku + 2.0 * second[1][k] * ku * kv + second[2][k] * kv * kv)
+            .iter()
+            .zip([nx, ny, nz])
+            .map(|(s, n)| s * n)
+            .sum::<f64>()
+            .abs();
+        let mut margin = if cosine == 0.0 { 0.0 } else { self.diagonal };
+        let fold = 0.5 * cosine * cosine / curvature;
+        if fold < margin {
+            margin = fold;
+        }
+
+        // The borders, by the parallelogram of the first derivatives as the ray sees it.
+        for edge in 0..EDGES {
+            let (across, along) = (edge / 2, 1 - edge / 2);
+            let rim = first[along];
+            let run = (uv[across] - (edge % 2) as f64).abs();
+            let distance = run * normal[2].abs() / (rim[0] * rim[0] + rim[1] * rim[1]).sqrt();
+            if distance < margin
+                && !self.edges.continues(
+                    surface.first_edge + edge,
+                    uv[along],
+                    self.frame.direction(),
+                )
+            {
+                margin = distance;
+            }
+        }
+        Found {
+            surface: surface.number,
+            uv: uv.map(|x| x.clamp(0.0, 1.0)),
+            depth: point[2],
+            blur: 4.0 * error / f64::max(cosine, 1e-8),
+            cosine,
+            margin,
+        }
+    }
+}
+
+/// The parameters of the corner, the middle of a side, or the centre of `domain` that is nearest to the ray. A collapsed
+/// edge that the ray meets is one of the sides.
+pub(super) fn nearest_point(degrees: Degrees, net: &[Point], domain: Domain) -> [f64; 2] {
+    let mut best = (f64::INFINITY, [0.0; 2]);
+    for k in 0..9 {
+        let uv = domain.at([0.5 * (k / 3) as f64, 0.5 * (k % 3) as f64]);
+        let p = surface_jet(degrees, net, uv[0], uv[1]).point;
+        let distance = p[0].hypot(p[1]) / p[3];
+        if distance < best.0 {
+            best = (distance, uv);
+        }
+    }
+    best.1
+}
