@@ -152,6 +152,26 @@ mod tests {
     }
 
     #[test]
+    fn a_rational_net_stays_injective_as_far_as_it_is_steady() {
+        let degrees = Degrees { m: 1, n: 1 };
+        // The plane distances (u - 1/2, v - 1/2) with weights 1, 1, 1 + k, 1 + k, of a ray moved by `x` along the first.
+        let of = |k: f64, x: f64| {
+            let net = [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)].map(|(u, v): (f64, f64)| {
+                let w = 1.0 + k * u;
+                [w * (u - 0.5 - x), w * (v - 0.5), 0.0, w]
+            });
+            derivatives(degrees, &net, mean_derivatives(degrees, &net), 0.0)
+        };
+        assert_eq!(of(0.0, 0.0).steadiness(), f64::INFINITY);
+        let steady = of(0.25, 0.0).steadiness();
+        assert!(steady > 0.5 && steady < 10.0, "{steady}");
+        for side in [-1.0, 1.0] {
+            assert!(of(0.25, 0.99 * side * steady).contraction < 1.0);
+        }
+        assert!(of(0.25, 4.5).contraction >= 1.0);
+    }
+
+    #[test]
     fn a_net_that_folds_over_is_not_called_injective() {
         // The determinant 1 + k v changes its sign at v = 1/2.
         assert!(contraction(&sheared(-2.0)) >= 1.0);

@@ -8,9 +8,9 @@ use super::injectivity::{derivatives, mean_derivatives};
 use super::net::{Axis, Degrees, Point, halve};
 use super::root::{Found, nearest_point};
 
-/// Domains examined per ray and surface. The most seen for a judged answer of the tests is some thousands (a degree 15
-/// surface met 15 times takes about 500); more only lengthens the work for rays that lie along a surface.
-pub(super) const MAX_DOMAINS: usize = 20_000;
+/// Domains examined per ray and surface. The teapot takes at most 111, a degree 15 surface met 15 times 179, a pole met
+/// head on or a tangent within 1e-15 up to 2,000; more only lengthens the work for rays that lie along a surface.
+const MAX_DOMAINS: usize = 20_000;
 
 /// Least extent of a domain in u or v, 2⁻⁵⁰: below it the parameters have no digits left.
 const MIN_SIZE: f64 = 1.0 / (1u64 << 50) as f64;
