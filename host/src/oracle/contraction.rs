@@ -40,22 +40,12 @@ const MATRIX_STEPS: usize = 53;
 
 /// Finds what `domain` holds, its derivative coefficients having q ≤ 1/2. `error` bounds the rounding error of a
 /// homogeneous plane distance on the domain when evaluated on `net`, the whole surface's.
-pub(super) fn content(
-    degrees: Degrees,
-    net: &[Point],
-    domain: Domain,
-    d: &Derivatives,
-    error: f64,
-) -> Content {
+pub(super) fn content(degrees: Degrees, net: &[Point], domain: Domain, d: &Derivatives, error: f64) -> Content {
     let evaluate = |x: [f64; 2]| {
         let [u, v] = domain.at(x);
         surface_jet(degrees, net, u, v)
     };
-    let coarsest = if domain.size[0] < domain.size[1] {
-        domain.size[0]
-    } else {
-        domain.size[1]
-    };
+    let coarsest = if domain.size[0] < domain.size[1] { domain.size[0] } else { domain.size[1] };
     // No step can be told from zero below this: the error of F through A, and that of the surface's parameters.
     let floor = d.inverse_norm() * error + 2.0 * f64::EPSILON / coarsest;
 
@@ -64,10 +54,7 @@ pub(super) fn content(
         let [a, b] = [0, 1].map(|k| jet.first[k].map(|y| y * domain.size[k]));
         let f = jet.point;
         let determinant = a[0] * b[1] - a[1] * b[0];
-        [
-            (f[0] * b[1] - f[1] * b[0]) / determinant,
-            (a[0] * f[1] - a[1] * f[0]) / determinant,
-        ]
+        [(f[0] * b[1] - f[1] * b[0]) / determinant, (a[0] * f[1] - a[1] * f[0]) / determinant]
     };
     let small = |step: [f64; 2], part: f64| step.iter().all(|s| s.abs() <= part * floor);
 
@@ -138,10 +125,7 @@ mod tests {
         }
         let d = derivatives(degrees, &net, mean_derivatives(degrees, &net), 1e-16);
         assert!(d.contraction < 0.5);
-        let domain = Domain {
-            corner: [0.0; 2],
-            size: [1.0; 2],
-        };
+        let domain = Domain { corner: [0.0; 2], size: [1.0; 2] };
         content(degrees, &net, domain, &d, 1e-16)
     }
 
@@ -154,10 +138,7 @@ mod tests {
             assert!((u - a).abs() < 1e-15 && (v - b).abs() < 1e-15);
         }
         for (a, b) in [(1.3, 0.5), (-1e-9, 0.5), (0.2, 1.0 + 1e-13), (1.5, -2.0)] {
-            assert!(
-                matches!(solve(a, b), Content::Nothing(gap) if gap > 0.0),
-                "{a} {b}"
-            );
+            assert!(matches!(solve(a, b), Content::Nothing(gap) if gap > 0.0), "{a} {b}");
         }
     }
 

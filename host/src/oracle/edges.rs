@@ -41,10 +41,7 @@ fn rows(degrees: Degrees, points: &[Point], edge: usize) -> [Vec<Point>; 2] {
 }
 
 fn homogeneous(points: &[Point]) -> Vec<Point> {
-    points
-        .iter()
-        .map(|p| [p[0] * p[3], p[1] * p[3], p[2] * p[3], p[3]])
-        .collect()
+    points.iter().map(|p| [p[0] * p[3], p[1] * p[3], p[2] * p[3], p[3]]).collect()
 }
 
 /// Whether two control polygons are the same to within `tolerance`.
@@ -54,37 +51,25 @@ fn same<'a>(a: &[Point], b: impl ExactSizeIterator<Item = &'a Point>, tolerance:
         && a.iter().zip(b).all(|(p, q)| {
             let weights = p[3] / q[3];
             let first: f64 = *ratio.get_or_insert(weights);
-            (weights / first - 1.0).abs() <= 8.0 * EPS
-                && (0..3).all(|k| (p[k] - q[k]).abs() <= tolerance)
+            (weights / first - 1.0).abs() <= 8.0 * EPS && (0..3).all(|k| (p[k] - q[k]).abs() <= tolerance)
         })
 }
 
 impl Edges {
     /// The edges of surfaces given by degrees and control points; those of surface `s` are numbers `4 s` to `4 s + 3`.
     /// Points are the same if no coordinate differs by more than `tolerance`.
-    pub(super) fn new<'a>(
-        surfaces: impl Iterator<Item = (Degrees, &'a [Point])>,
-        tolerance: f64,
-    ) -> Edges {
+    pub(super) fn new<'a>(surfaces: impl Iterator<Item = (Degrees, &'a [Point])>, tolerance: f64) -> Edges {
         let mut polygons = Vec::new();
         let mut edges = Vec::new();
         for (degrees, points) in surfaces {
             for number in 0..EDGES {
                 let [curve, inner] = rows(degrees, points, number);
-                edges.push(Edge {
-                    curve: homogeneous(&curve),
-                    inner: homogeneous(&inner),
-                    partners: Vec::new(),
-                });
+                edges.push(Edge { curve: homogeneous(&curve), inner: homogeneous(&inner), partners: Vec::new() });
                 polygons.push(curve);
             }
         }
         // Same polygons have the same least x: only edges that adjoin in this order need a comparison.
-        let least = |k: usize| {
-            polygons[k]
-                .iter()
-                .fold(f64::INFINITY, |m, p| if p[0] < m { p[0] } else { m })
-        };
+        let least = |k: usize| polygons[k].iter().fold(f64::INFINITY, |m, p| if p[0] < m { p[0] } else { m });
         let mut order: Vec<(f64, usize)> = (0..polygons.len()).map(|k| (least(k), k)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (position, &(x, a)) in order.iter().enumerate() {
@@ -138,18 +123,8 @@ mod tests {
     /// A roof over the ridge x = 0: two bilinear surfaces, the second running the other way along it.
     fn roof() -> Edges {
         let one = Degrees { m: 1, n: 1 };
-        let left = [
-            [-1.0, 0.0, -1.0, 1.0],
-            [-1.0, 1.0, -1.0, 1.0],
-            [0.0, 0.0, 0.0, 1.0],
-            [0.0, 1.0, 0.0, 1.0],
-        ];
-        let right = [
-            [0.0, 1.0, 0.0, 1.0],
-            [0.0, 0.0, 0.0, 1.0],
-            [1.0, 1.0, -1.0, 1.0],
-            [1.0, 0.0, -1.0, 1.0],
-        ];
+        let left = [[-1.0, 0.0, -1.0, 1.0], [-1.0, 1.0, -1.0, 1.0], [0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]];
+        let right = [[0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0], [1.0, 1.0, -1.0, 1.0], [1.0, 0.0, -1.0, 1.0]];
         Edges::new([(one, &left[..]), (one, &right[..])].into_iter(), 1e-15)
     }
 
@@ -159,16 +134,10 @@ mod tests {
         let ridge = [1, EDGES];
         for edge in ridge {
             assert!(edges.continues(edge, 0.3, [0.0, 0.0, -1.0]), "from above");
-            assert!(
-                !edges.continues(edge, 0.3, [1.0, 0.0, 0.1]),
-                "from the side"
-            );
+            assert!(!edges.continues(edge, 0.3, [1.0, 0.0, 0.1]), "from the side");
         }
         for edge in (0..2 * EDGES).filter(|e| !ridge.contains(e)) {
-            assert!(
-                !edges.continues(edge, 0.3, [0.0, 0.0, -1.0]),
-                "an outer border"
-            );
+            assert!(!edges.continues(edge, 0.3, [0.0, 0.0, -1.0]), "an outer border");
         }
     }
 }

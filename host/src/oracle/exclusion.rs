@@ -17,14 +17,8 @@ pub(super) struct Gap {
 const FIXED: [[f64; 2]; 4] = [
     [1.0, 0.0],
     [0.0, 1.0],
-    [
-        std::f64::consts::FRAC_1_SQRT_2,
-        std::f64::consts::FRAC_1_SQRT_2,
-    ],
-    [
-        std::f64::consts::FRAC_1_SQRT_2,
-        -std::f64::consts::FRAC_1_SQRT_2,
-    ],
+    [std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::FRAC_1_SQRT_2],
+    [std::f64::consts::FRAC_1_SQRT_2, -std::f64::consts::FRAC_1_SQRT_2],
 ];
 
 /// The widest gap over the fixed lines and over those along each of `tangents`, the net's mean derivatives; the search
@@ -52,10 +46,7 @@ pub(super) fn widest_gap(distances: &[[f64; 2]], tangents: [[f64; 2]; 2], enough
         // A zero tangent gives NaN throughout, which leaves low > high: no line.
         let width = if low > -high { low } else { -high };
         if low <= high && width > best.width {
-            best = Gap {
-                width,
-                extent: high - low,
-            };
+            best = Gap { width, extent: high - low };
             if width >= enough {
                 break;
             }
@@ -80,9 +71,6 @@ mod tests {
     #[test]
     fn a_net_about_the_origin_has_no_gap() {
         let distances = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
-        assert_eq!(
-            widest_gap(&distances, [[2.0, 0.0], [0.0, 2.0]], 1.0).width,
-            0.0
-        );
+        assert_eq!(widest_gap(&distances, [[2.0, 0.0], [0.0, 2.0]], 1.0).width, 0.0);
     }
 }

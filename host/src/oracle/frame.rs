@@ -27,11 +27,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn unit(a: [f64; 3]) -> [f64; 3] {
@@ -43,20 +39,14 @@ impl Frame {
     /// The frame of the ray `origin + t direction`, for a model about `centre`; `None` if a number is not finite, the
     /// direction is zero, or the parameter of the point nearest to `centre` cannot be held in f64.
     pub(super) fn new(origin: [f64; 3], direction: [f64; 3], centre: [f64; 3]) -> Option<Frame> {
-        let largest = direction
-            .iter()
-            .fold(0.0, |m: f64, x| if x.abs() > m { x.abs() } else { m });
+        let largest = direction.iter().fold(0.0, |m: f64, x| if x.abs() > m { x.abs() } else { m });
         if !(origin.iter().chain(&direction).all(|x| x.is_finite()) && largest > 0.0) {
             return None;
         }
         let scaled = direction.map(|x| x / largest);
         let along = unit(scaled);
         let length = largest * dot(scaled, scaled).sqrt();
-        let to_centre = [
-            centre[0] - origin[0],
-            centre[1] - origin[1],
-            centre[2] - origin[2],
-        ];
+        let to_centre = [centre[0] - origin[0], centre[1] - origin[1], centre[2] - origin[2]];
         let shift = dot(to_centre, along) / length;
         // A fused product and sum rounds once, so the moved origin is as near to the ray as f64 can state a point.
         let moved = [0, 1, 2].map(|k| shift.mul_add(direction[k], origin[k]));
@@ -72,12 +62,7 @@ impl Frame {
         let mut axis = [0.0; 3];
         axis[least] = 1.0;
         let first = unit(cross(axis, along));
-        Some(Frame {
-            origin: moved,
-            shift,
-            length,
-            axes: [first, cross(along, first), along],
-        })
+        Some(Frame { origin: moved, shift, length, axes: [first, cross(along, first), along] })
     }
 
     /// The ray's unit direction in the model's coordinates.
@@ -105,10 +90,7 @@ impl Frame {
     /// A bounding box in the frame: its centre there and half its extent along each axis.
     pub(super) fn project_box(&self, centre: [f64; 3], half: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let offset = [0, 1, 2].map(|k| centre[k] - self.origin[k]);
-        (
-            self.axes.map(|axis| dot(axis, offset)),
-            self.axes.map(|axis| dot(axis.map(f64::abs), half)),
-        )
+        (self.axes.map(|axis| dot(axis, offset)), self.axes.map(|axis| dot(axis.map(f64::abs), half)))
     }
 
     /// A bound on the error of a projected point, per unit of weight, for points within `reach` of the frame's origin:
@@ -139,12 +121,7 @@ mod tests {
     fn a_far_origin_costs_no_digits() {
         // The ray's points have exact coordinates, 1e12 away from the model.
         let t = 2f64.powi(40);
-        let frame = Frame::new(
-            [1.0 - 3.0 * t, 2.0 + t, 3.0],
-            [3.0, -1.0, 0.0],
-            [1.0, 2.0, 3.0],
-        )
-        .unwrap();
+        let frame = Frame::new([1.0 - 3.0 * t, 2.0 + t, 3.0], [3.0, -1.0, 0.0], [1.0, 2.0, 3.0]).unwrap();
         let p = frame.project([1.0, 2.0, 3.0, 1.0]);
         assert!(p[0].abs() < 1e-15 && p[1].abs() < 1e-15, "{p:?}");
         assert!((frame.parameter(p[2]) - t).abs() <= 2.0 * EPS * t);

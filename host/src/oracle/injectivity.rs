@@ -49,8 +49,7 @@ fn larger(a: f64, b: f64) -> f64 {
 /// and of the weight.
 fn coefficients(degrees: Degrees, net: &[Point], mut each: impl FnMut(usize, [f64; 3])) {
     let Degrees { m, n } = degrees;
-    let difference =
-        |a: Point, b: Point, degree: usize| [0, 1, 3].map(|k| degree as f64 * (b[k] - a[k]));
+    let difference = |a: Point, b: Point, degree: usize| [0, 1, 3].map(|k| degree as f64 * (b[k] - a[k]));
     for i in 0..m {
         for j in 0..=n {
             let at = i * (n + 1) + j;
@@ -82,21 +81,13 @@ pub(super) fn mean_derivatives(degrees: Degrees, net: &[Point]) -> [[f64; 2]; 2]
 }
 
 /// The derivatives of `net`, whose homogeneous coefficients are exact to within `error`.
-pub(super) fn derivatives(
-    degrees: Degrees,
-    net: &[Point],
-    mean: [[f64; 2]; 2],
-    error: f64,
-) -> Derivatives {
+pub(super) fn derivatives(degrees: Degrees, net: &[Point], mean: [[f64; 2]; 2], error: f64) -> Derivatives {
     let rounding = 2.0 * degrees.highest() as f64 * error;
     let [u, v] = mean;
     let determinant = u[0] * v[1] - u[1] * v[0];
     let size = (u[0].abs() + u[1].abs()) * (v[0].abs() + v[1].abs());
     let regular = determinant.abs() > 4.0 * f64::EPSILON * size;
-    let inverse = [
-        [v[1] / determinant, -v[0] / determinant],
-        [-u[1] / determinant, u[0] / determinant],
-    ];
+    let inverse = [[v[1] / determinant, -v[0] / determinant], [-u[1] / determinant, u[0] / determinant]];
     let mut largest = [[0.0; 2]; 2];
     let mut variation = 0.0;
     let mut weight_slopes = [0.0; 2];
@@ -130,12 +121,7 @@ mod tests {
     /// The plane distances (u + k u v, v) of a bilinear net.
     fn sheared(k: f64) -> Vec<Point> {
         let point = |u: f64, v: f64| [u + k * u * v, v, 0.0, 1.0];
-        vec![
-            point(0.0, 0.0),
-            point(0.0, 1.0),
-            point(1.0, 0.0),
-            point(1.0, 1.0),
-        ]
+        vec![point(0.0, 0.0), point(0.0, 1.0), point(1.0, 0.0), point(1.0, 1.0)]
     }
 
     fn contraction(net: &[Point]) -> f64 {

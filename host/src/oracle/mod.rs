@@ -107,34 +107,20 @@ impl Oracle {
     /// Makes `model` ready. A surface with degrees outside 1 to 15, too few or too many points, a coordinate beyond
     /// ±1e100 or a weight outside 1e-100 to 1e100 is invalid: it is left out and counted in every verdict as unresolved.
     pub fn new(model: &Model) -> Oracle {
-        let valid: Vec<(usize, &ModelSurface)> = model
-            .surfaces
-            .iter()
-            .enumerate()
-            .filter(|(_, s)| is_valid(s))
-            .collect();
+        let valid: Vec<(usize, &ModelSurface)> =
+            model.surfaces.iter().enumerate().filter(|(_, s)| is_valid(s)).collect();
         let all = bounds(valid.iter().flat_map(|(_, s)| &s.points));
-        let largest = all
-            .iter()
-            .flatten()
-            .fold(0.0, |m, x| if x.abs() > m { x.abs() } else { m });
+        let largest = all.iter().flatten().fold(0.0, |m, x| if x.abs() > m { x.abs() } else { m });
         let mut surfaces = Vec::new();
         for (place, (number, surface)) in valid.iter().enumerate() {
             let heaviest = surface.points.iter().fold(0.0, |m, p| f64::max(m, p[3]));
             let scale = heaviest.log2().ceil().exp2();
-            let points = surface
-                .points
-                .iter()
-                .map(|p| [p[0], p[1], p[2], p[3] / scale])
-                .collect();
+            let points = surface.points.iter().map(|p| [p[0], p[1], p[2], p[3] / scale]).collect();
             let [low, high] = bounds(surface.points.iter());
             surfaces.push(Surface {
                 number: *number,
                 first_edge: EDGES * place,
-                degrees: Degrees {
-                    m: surface.degree_u,
-                    n: surface.degree_v,
-                },
+                degrees: Degrees { m: surface.degree_u, n: surface.degree_v },
                 points,
                 centre: [0, 1, 2].map(|k| 0.5 * (low[k] + high[k])),
                 half: [0, 1, 2].map(|k| 0.5 * (high[k] - low[k])),
@@ -143,18 +129,10 @@ impl Oracle {
         let nets = surfaces.iter().map(|s| (s.degrees, &s.points[..]));
         let edges = Edges::new(nets, 4.0 * EPS * largest);
         let [low, high] = all;
-        let diagonal = [0, 1, 2]
-            .map(|k| (high[k] - low[k]).powi(2))
-            .iter()
-            .sum::<f64>()
-            .sqrt();
+        let diagonal = [0, 1, 2].map(|k| (high[k] - low[k]).powi(2)).iter().sum::<f64>().sqrt();
         Oracle {
             invalid: model.surfaces.len() - surfaces.len(),
-            centre: if surfaces.is_empty() {
-                [0.0; 3]
-            } else {
-                [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]))
-            },
+            centre: if surfaces.is_empty() { [0.0; 3] } else { [0, 1, 2].map(|k| 0.5 * (low[k] + high[k])) },
             // A model that is a single point has no extent to measure by.
             diagonal: if diagonal > 0.0 { diagonal } else { 1.0 },
             surfaces,
@@ -167,11 +145,7 @@ impl Oracle {
     pub fn trace(&self, origin: [f64; 3], direction: [f64; 3], t_min: f64, t_max: f64) -> Verdict {
         let frame = Frame::new(origin, direction, self.centre);
         let Some(frame) = frame.filter(|_| !t_min.is_nan() && !t_max.is_nan()) else {
-            return Verdict {
-                roots: Vec::new(),
-                margin: 0.0,
-                unresolved: 1,
-            };
+            return Verdict { roots: Vec::new(), margin: 0.0, unresolved: 1 };
         };
         let ray = Ray {
             frame: &frame,
@@ -187,13 +161,7 @@ impl Oracle {
     }
 
     /// The verdict on what was found.
-    fn judge(
-        &self,
-        frame: &Frame,
-        mut findings: Findings,
-        times: [f64; 2],
-        range: [f64; 2],
-    ) -> Verdict {
+    fn judge(&self, frame: &Frame, mut findings: Findings, times: [f64; 2], range: [f64; 2]) -> Verdict {
         findings.roots.sort_by(|a, b| a.depth.total_cmp(&b.depth));
         let mut merged: Vec<Found> = Vec::new();
         for root in findings.roots {
@@ -247,12 +215,7 @@ impl Oracle {
                 limit(clearance.gap);
             }
         }
-        if self.invalid > 0
-            || findings
-                .unresolved
-                .iter()
-                .any(|&d| d <= deepest || inside.is_empty())
-        {
+        if self.invalid > 0 || findings.unresolved.iter().any(|&d| d <= deepest || inside.is_empty()) {
             limit(0.0);
         }
 

@@ -41,13 +41,7 @@ pub(super) enum Axis {
 
 /// Halves `net` across `axis` at the middle of its domain: `low` and `high` become the nets of the two halves. All three
 /// slices hold `degrees.points()` points.
-pub(super) fn halve(
-    degrees: Degrees,
-    net: &[Point],
-    axis: Axis,
-    low: &mut [Point],
-    high: &mut [Point],
-) {
+pub(super) fn halve(degrees: Degrees, net: &[Point], axis: Axis, low: &mut [Point], high: &mut [Point]) {
     let (lines, step, degree, stride) = match axis {
         Axis::U => (degrees.n + 1, 1, degrees.m, degrees.n + 1),
         Axis::V => (degrees.m + 1, degrees.n + 1, degrees.n, 1),
@@ -129,11 +123,7 @@ pub(super) fn surface_jet(degrees: Degrees, net: &[Point], u: f64, v: f64) -> Je
     let [point, by_u, by_uu] = curve_jet(degrees.m, &mut columns[0], u);
     let [by_v, by_uv, _] = curve_jet(degrees.m, &mut columns[1], u);
     let [by_vv, _, _] = curve_jet(degrees.m, &mut columns[2], u);
-    Jet {
-        point,
-        first: [by_u, by_v],
-        second: [by_uu, by_uv, by_vv],
-    }
+    Jet { point, first: [by_u, by_v], second: [by_uu, by_uv, by_vv] }
 }
 
 #[cfg(test)]
@@ -145,13 +135,8 @@ mod tests {
         let degrees = Degrees { m: 4, n: 3 };
         // Bernstein coefficients of the powers of a parameter, by degree.
         let power = |d: usize, k: usize, i: usize| {
-            let choose =
-                |n: usize, k: usize| (0..k).fold(1.0, |c, j| c * (n - j) as f64 / (j + 1) as f64);
-            if i < k {
-                0.0
-            } else {
-                choose(i, k) / choose(d, k)
-            }
+            let choose = |n: usize, k: usize| (0..k).fold(1.0, |c, j| c * (n - j) as f64 / (j + 1) as f64);
+            if i < k { 0.0 } else { choose(i, k) / choose(d, k) }
         };
         let mut net = Vec::new();
         for i in 0..=4 {
@@ -161,8 +146,7 @@ mod tests {
                 net.push([
                     term(1, 0) + term(2, 0) + term(1, 1),
                     term(0, 1) + term(1, 1) + term(0, 2),
-                    term(3, 0) + term(4, 0) + term(3, 1)
-                        - 2.0 * (term(1, 2) + term(2, 2) + term(1, 3)),
+                    term(3, 0) + term(4, 0) + term(3, 1) - 2.0 * (term(1, 2) + term(2, 2) + term(1, 3)),
                     term(0, 0) + term(1, 0) + term(0, 1),
                 ]);
             }

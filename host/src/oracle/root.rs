@@ -24,42 +24,21 @@ pub(super) struct Found {
 
 impl Ray<'_> {
     /// The root at `uv`, with its margin; `error` bounds the error of an evaluation, per unit of weight.
-    pub(super) fn measure(
-        &self,
-        surface: &Surface,
-        net: &[Point],
-        uv: [f64; 2],
-        error: f64,
-    ) -> Found {
+    pub(super) fn measure(&self, surface: &Surface, net: &[Point], uv: [f64; 2], error: f64) -> Found {
         let jet = surface_jet(surface.degrees, net, uv[0], uv[1]);
         let w = jet.point[3];
         let point = [0, 1, 2].map(|k| jet.point[k] / w);
         // The quotient rule, for the first derivatives and then for the second.
-        let first = jet
-            .first
-            .map(|d| [0, 1, 2].map(|k| (d[k] - d[3] * point[k]) / w));
+        let first = jet.first.map(|d| [0, 1, 2].map(|k| (d[k] - d[3] * point[k]) / w));
         let second = [(0, 0), (0, 1), (1, 1)].map(|(a, b)| {
             let d = jet.second[a + b];
-            [0, 1, 2].map(|k| {
-                (d[k]
-                    - d[3] * point[k]
-                    - jet.first[a][3] * first[b][k]
-                    - jet.first[b][3] * first[a][k])
-                    / w
-            })
+            [0, 1, 2]
+                .map(|k| (d[k] - d[3] * point[k] - jet.first[a][3] * first[b][k] - jet.first[b][3] * first[a][k]) / w)
         });
         let [a, b] = first;
-        let normal = [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ];
+        let normal = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
         let area = norm(normal);
-        let cosine = if area > 0.0 {
-            normal[2].abs() / area
-        } else {
-            0.0
-        };
+        let cosine = if area > 0.0 { normal[2].abs() / area } else { 0.0 };
 
         // The fold: along the tangent T nearest to the ray the surface turns away with its curvature there.
         let [nx, ny, nz] = normal.map(|x| x / area);
@@ -67,9 +46,7 @@ impl Ray<'_> {
         // T = (e_z − n_z n) / |..|, in parameters: (T × S_v · n, S_u × T · n) / |S_u × S_v|.
         let tangent = [-nz * nx / sine, -nz * ny / sine, sine];
         let triple = |p: [f64; 3], q: [f64; 3]| {
-            ((p[1] * q[2] - p[2] * q[1]) * nx
-                + (p[2] * q[0] - p[0] * q[2]) * ny
-                + (p[0] * q[1] - p[1] * q[0]) * nz)
+            ((p[1] * q[2] - p[2] * q[1]) * nx + (p[2] * q[0] - p[0] * q[2]) * ny + (p[0] * q[1] - p[1] * q[0]) * nz)
                 / area
         };
         let (ku, kv) = (triple(tangent, b), triple(a, tangent));
@@ -92,12 +69,7 @@ impl Ray<'_> {
             let rim = first[along];
             let run = (uv[across] - (edge % 2) as f64).abs();
             let distance = run * normal[2].abs() / (rim[0] * rim[0] + rim[1] * rim[1]).sqrt();
-            if distance < margin
-                && !self.edges.continues(
-                    surface.first_edge + edge,
-                    uv[along],
-                    self.frame.direction(),
-                )
+            if distance < margin && !self.edges.continues(surface.first_edge + edge, uv[along], self.frame.direction())
             {
                 margin = distance;
             }

@@ -115,10 +115,7 @@ impl Ray<'_> {
         }
         consider(self.range[0] - (centre[2] + half[2]), 2.0 * half[2]);
         consider((centre[2] - half[2]) - self.range[1], 2.0 * half[2]);
-        best.map(|gap| Clearance {
-            gap,
-            depth: centre[2] - half[2],
-        })
+        best.map(|gap| Clearance { gap, depth: centre[2] - half[2] })
     }
 
     /// Whether the surface carries on across all of its edges that `domain` touches, as far as their ends and middle tell.
@@ -129,8 +126,7 @@ impl Ray<'_> {
             border != (edge % 2) as f64
                 || [0.0, 0.5, 1.0].iter().all(|x| {
                     let s = domain.corner[along] + x * domain.size[along];
-                    self.edges
-                        .continues(surface.first_edge + edge, s, self.frame.direction())
+                    self.edges.continues(surface.first_edge + edge, s, self.frame.direction())
                 })
         })
     }
@@ -146,22 +142,12 @@ impl Ray<'_> {
         }
         let degrees = surface.degrees;
         let count = degrees.points();
-        let net: Vec<Point> = surface
-            .points
-            .iter()
-            .map(|&p| self.frame.project(p))
-            .collect();
+        let net: Vec<Point> = surface.points.iter().map(|&p| self.frame.project(p)).collect();
         // Each of the m + n stages of an evaluation rounds twice, and its parameters once.
         let evaluation = error + 3.0 * (degrees.m + degrees.n) as f64 * EPS * reach;
         let ample = AMPLE_PART * self.diagonal;
 
-        let mut stack = vec![Pending {
-            domain: Domain {
-                corner: [0.0; 2],
-                size: [1.0; 2],
-            },
-            error,
-        }];
+        let mut stack = vec![Pending { domain: Domain { corner: [0.0; 2], size: [1.0; 2] }, error }];
         let mut nets = net.clone();
         let mut current = vec![[0.0; 4]; count];
         let mut distances = vec![[0.0; 2]; count];
@@ -179,10 +165,7 @@ impl Ray<'_> {
                     farthest = f64::max(farthest, d.abs());
                 }
                 weight = f64::max(weight, p[3]);
-                depths = [
-                    f64::min(depths[0], p[2] / p[3]),
-                    f64::max(depths[1], p[2] / p[3]),
-                ];
+                depths = [f64::min(depths[0], p[2] / p[3]), f64::max(depths[1], p[2] / p[3])];
             }
             if examined == MAX_DOMAINS {
                 findings.unresolved.push(depths[0]);
@@ -199,10 +182,7 @@ impl Ray<'_> {
                 }
                 // A root can enter a regular part only from a part beside it or across a border that nothing continues.
                 let d = derivatives(degrees, &current, mean, error * weight);
-                if d.contraction < 1.0
-                    && d.steadiness() >= gap.width
-                    && self.continues(surface, domain)
-                {
+                if d.contraction < 1.0 && d.steadiness() >= gap.width && self.continues(surface, domain) {
                     findings.clear(d.steadiness(), depths[0]);
                     continue;
                 }
@@ -221,9 +201,7 @@ impl Ray<'_> {
                 if d.contraction <= MAX_CONTRACTION && noise <= MAX_NOISE {
                     match content(degrees, &net, domain, &d, evaluation * weight) {
                         Content::Root(uv) => {
-                            findings
-                                .roots
-                                .push(self.measure(surface, &net, uv, evaluation));
+                            findings.roots.push(self.measure(surface, &net, uv, evaluation));
                         }
                         Content::Nothing(gap) if !self.continues(surface, domain) => {
                             findings.clear(gap / weight, depths[0]);
@@ -236,9 +214,7 @@ impl Ray<'_> {
                 // All that the map of this domain varies by is rounding: halving it again would tell nothing, unless it
                 // is about to be no more than a point.
                 let point = POINT_PART * degrees.highest() as f64 * error;
-                if axis.is_none()
-                    || d.variation <= 8.0 * d.rounding
-                        && !(farthest > point && farthest <= 64.0 * point)
+                if axis.is_none() || d.variation <= 8.0 * d.rounding && !(farthest > point && farthest <= 64.0 * point)
                 {
                     if farthest <= point {
                         let uv = nearest_point(degrees, &net, domain);
@@ -254,11 +230,7 @@ impl Ray<'_> {
             }
             if let Some(axis) = axis {
                 // Each stage of the halving rounds once.
-                let degree = if axis == Axis::U {
-                    degrees.m
-                } else {
-                    degrees.n
-                };
+                let degree = if axis == Axis::U { degrees.m } else { degrees.n };
                 let error = error + degree as f64 * EPS * farthest;
                 let place = nets.len();
                 nets.resize(place + 2 * count, [0.0; 4]);
@@ -269,10 +241,7 @@ impl Ray<'_> {
                     let mut half = domain;
                     half.size[k] *= 0.5;
                     half.corner[k] += side as f64 * half.size[k];
-                    stack.push(Pending {
-                        domain: half,
-                        error,
-                    });
+                    stack.push(Pending { domain: half, error });
                 }
             }
         }

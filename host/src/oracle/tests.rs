@@ -2,31 +2,7 @@ use super::*;
 use rayon::prelude::*;
 
 fn teapot() -> Model {
-    let path = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../fixtures/patches/teapot.bpt"
-    );
-    let text = std::fs::read_to_string(path).unwrap();
-    let mut numbers = text
-        .split_whitespace()
-        .map(|word| word.parse::<f64>().unwrap());
-    let mut next = || numbers.next().unwrap();
-    let count = next() as usize;
-    let surface = |_| {
-        let (degree_u, degree_v) = (next() as usize, next() as usize);
-        let points = (0..(degree_u + 1) * (degree_v + 1))
-            .map(|_| [next(), next(), next(), 1.0])
-            .collect();
-        ModelSurface {
-            degree_u,
-            degree_v,
-            rational: false,
-            points,
-        }
-    };
-    Model {
-        surfaces: (0..count).map(surface).collect(),
-    }
+    crate::scene::teapot::model().expect("the built-in teapot is valid")
 }
 
 /// The ray through a pixel of the common view, 512 x 512.
@@ -55,12 +31,7 @@ fn the_common_view_has_its_known_counts() {
     let unresolved: usize = verdicts.iter().map(|v| v.unresolved).sum();
     let mut margins: Vec<f64> = verdicts.iter().map(|v| v.margin).collect();
     margins.sort_by(f64::total_cmp);
-    let quantiles: Vec<f64> = [0, 1, 10, 100, 1000, 10000, 100000, 200000]
-        .iter()
-        .map(|&k| margins[k])
-        .collect();
-    println!(
-        "{hits} hits, {roots} roots, {unresolved} unresolved, {seconds:.2} s; margins {quantiles:?}"
-    );
+    let quantiles: Vec<f64> = [0, 1, 10, 100, 1000, 10000, 100000, 200000].iter().map(|&k| margins[k]).collect();
+    println!("{hits} hits, {roots} roots, {unresolved} unresolved, {seconds:.2} s; margins {quantiles:?}");
     assert_eq!((hits, roots, unresolved), (109_540, 237_594, 0));
 }

@@ -30,6 +30,7 @@ impl Random {
 
 fn polynomial(degree_u: usize, degree_v: usize, points: Vec<[f64; 3]>) -> ModelSurface {
     ModelSurface {
+        number: 0,
         degree_u,
         degree_v,
         rational: false,
@@ -39,9 +40,7 @@ fn polynomial(degree_u: usize, degree_v: usize, points: Vec<[f64; 3]>) -> ModelS
 
 /// A model of one surface.
 pub fn single(surface: ModelSurface) -> Model {
-    Model {
-        surfaces: vec![surface],
-    }
+    Model::numbered(vec![surface])
 }
 
 /// The bilinear surface with these corners, in the order (u, v) = (0, 0), (0, 1), (1, 0), (1, 1).
@@ -62,11 +61,7 @@ pub fn paraboloid(apex: [f64; 3], half_width: f64) -> ModelSurface {
     let mut points = Vec::new();
     for i in 0..3 {
         for j in 0..3 {
-            points.push([
-                apex[0] + line[i],
-                apex[1] + line[j],
-                apex[2] + square[i] + square[j],
-            ]);
+            points.push([apex[0] + line[i], apex[1] + line[j], apex[2] + square[i] + square[j]]);
         }
     }
     polynomial(2, 2, points)
@@ -74,13 +69,7 @@ pub fn paraboloid(apex: [f64; 3], half_width: f64) -> ModelSurface {
 
 /// A surface of degrees `m`, `n` over a square of side `size` about `centre` in x and y, its control points' heights
 /// spread at random over `height` to either side and its inner points moved sideways by up to a third of their spacing.
-pub fn bumpy(
-    seed: u64,
-    [m, n]: [usize; 2],
-    centre: [f64; 3],
-    size: f64,
-    height: f64,
-) -> ModelSurface {
+pub fn bumpy(seed: u64, [m, n]: [usize; 2], centre: [f64; 3], size: f64, height: f64) -> ModelSurface {
     let mut random = Random(seed);
     let mut points = Vec::new();
     for i in 0..=m {
@@ -113,11 +102,7 @@ fn arc(count: usize, number: usize) -> [[f64; 3]; 3] {
     };
     let weight = (std::f64::consts::PI / count as f64).cos();
     let [a, c] = [2 * number, 2 * number + 2].map(angle);
-    let b = if count == 4 {
-        [a[0] + c[0], a[1] + c[1]]
-    } else {
-        angle(2 * number + 1).map(|x| x / weight)
-    };
+    let b = if count == 4 { [a[0] + c[0], a[1] + c[1]] } else { angle(2 * number + 1).map(|x| x / weight) };
     [[a[0], a[1], 1.0], [b[0], b[1], weight], [c[0], c[1], 1.0]]
 }
 
@@ -128,20 +113,10 @@ fn revolve(centre: [f64; 3], profile: &[[f64; 3]], around: usize) -> Vec<ModelSu
         let mut points = Vec::new();
         for &[radius, height, weight] in profile {
             for [x, y, w] in arc(around, number) {
-                points.push([
-                    centre[0] + radius * x,
-                    centre[1] + radius * y,
-                    centre[2] + height,
-                    weight * w,
-                ]);
+                points.push([centre[0] + radius * x, centre[1] + radius * y, centre[2] + height, weight * w]);
             }
         }
-        ModelSurface {
-            degree_u: profile.len() - 1,
-            degree_v: 2,
-            rational: true,
-            points,
-        }
+        ModelSurface { number: 0, degree_u: profile.len() - 1, degree_v: 2, rational: true, points }
     };
     (0..around).map(surface).collect()
 }
@@ -154,16 +129,14 @@ pub fn sphere(centre: [f64; 3], radius: f64) -> Model {
         let profile = arc(4, number).map(|[x, y, w]| [radius * x, radius * y, w]);
         surfaces.extend(revolve(centre, &profile, 4));
     }
-    Model { surfaces }
+    Model::numbered(surfaces)
 }
 
 /// An open cylinder about the vertical axis through `centre`, of `height` half above and half below: 4 surfaces of
 /// degrees 1 along the axis (u, upwards) and 2 around it.
 pub fn cylinder(centre: [f64; 3], radius: f64, height: f64) -> Model {
     let profile = [[radius, -0.5 * height, 1.0], [radius, 0.5 * height, 1.0]];
-    Model {
-        surfaces: revolve(centre, &profile, 4),
-    }
+    Model::numbered(revolve(centre, &profile, 4))
 }
 
 /// A torus about the vertical axis through `centre`: the circle of radius `minor` swept along that of radius `major`, of
@@ -174,7 +147,7 @@ pub fn torus(centre: [f64; 3], major: f64, minor: f64, around: usize, across: us
         let profile = arc(across, number).map(|[x, y, w]| [major + minor * x, minor * y, w]);
         surfaces.extend(revolve(centre, &profile, around));
     }
-    Model { surfaces }
+    Model::numbered(surfaces)
 }
 
 /// The same surface with degrees raised to `m` and `n`, each at least its own (Farin, section 5.1).
@@ -190,9 +163,7 @@ pub fn elevate(surface: &ModelSurface, m: usize, n: usize) -> ModelSurface {
         raised
     };
     let transpose = |rows: Vec<Vec<[f64; 4]>>| -> Vec<Vec<[f64; 4]>> {
-        (0..rows[0].len())
-            .map(|j| rows.iter().map(|row| row[j]).collect())
-            .collect()
+        (0..rows[0].len()).map(|j| rows.iter().map(|row| row[j]).collect()).collect()
     };
     let to = |rows: Vec<Vec<[f64; 4]>>, degree: usize| -> Vec<Vec<[f64; 4]>> {
         let raise_to = |mut row: Vec<[f64; 4]>| {
@@ -205,21 +176,14 @@ pub fn elevate(surface: &ModelSurface, m: usize, n: usize) -> ModelSurface {
         rows.into_iter().map(raise_to).collect()
     };
     let homogeneous = |&[x, y, z, w]: &[f64; 4]| [x * w, y * w, z * w, w];
-    let rows = surface
-        .points
-        .chunks(surface.degree_v + 1)
-        .map(|row| row.iter().map(homogeneous).collect())
-        .collect();
+    let rows = surface.points.chunks(surface.degree_v + 1).map(|row| row.iter().map(homogeneous).collect()).collect();
     let raised = transpose(to(transpose(to(rows, n)), m));
     ModelSurface {
+        number: 0,
         degree_u: m,
         degree_v: n,
         rational: surface.rational,
-        points: raised
-            .into_iter()
-            .flatten()
-            .map(|[x, y, z, w]| [x / w, y / w, z / w, w])
-            .collect(),
+        points: raised.into_iter().flatten().map(|[x, y, z, w]| [x / w, y / w, z / w, w]).collect(),
     }
 }
 
@@ -296,15 +260,9 @@ mod tests {
 
     #[test]
     fn raising_the_degree_leaves_the_surface() {
-        for surface in [
-            &sphere([0.0; 3], 1.0).surfaces[2],
-            &bumpy(7, [3, 2], [0.0; 3], 2.0, 0.5),
-        ] {
+        for surface in [&sphere([0.0; 3], 1.0).surfaces[2], &bumpy(7, [3, 2], [0.0; 3], 2.0, 0.5)] {
             let raised = elevate(surface, 7, 15);
-            assert_eq!(
-                (raised.degree_u, raised.degree_v, raised.points.len()),
-                (7, 15, 128)
-            );
+            assert_eq!((raised.degree_u, raised.degree_v, raised.points.len()), (7, 15, 128));
             for (u, v) in [(0.0, 0.0), (0.3, 0.9), (1.0, 0.5)] {
                 let (a, b) = (point(surface, u, v), point(&raised, u, v));
                 assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-14));

@@ -3,20 +3,14 @@
 use crate::truth::*;
 use patchray_host::oracle::Oracle;
 use patchray_host::scene::model::{Model, ModelSurface};
-use patchray_host::scene::shapes::{
-    Random, bumpy, elevate, paraboloid, parallelogram, single, sphere,
-};
+use patchray_host::scene::shapes::{Random, bumpy, elevate, paraboloid, parallelogram, single, sphere};
 
 #[test]
 fn a_paraboloid_just_above_and_below_its_apex() {
     let apex = [0.25, -0.5, 1.0];
     let oracle = Oracle::new(&single(paraboloid(apex, 1.0)));
     for exponent in 4..=11 {
-        for (direction, offset) in [
-            ([1.0, 0.0, 0.0], 0.0),
-            ([0.6, 0.8, 0.0], 0.0),
-            ([0.0, -1.0, 0.0], 0.125),
-        ] {
+        for (direction, offset) in [([1.0, 0.0, 0.0], 0.0), ([0.6, 0.8, 0.0], 0.0), ([0.0, -1.0, 0.0], 0.125)] {
             let height = offset * offset + 10f64.powi(-exponent);
             let origin = add(add(apex, -4.0, direction), offset, [1.0, 0.0, 0.0]);
             let raised = [origin[0], origin[1], origin[2] + height];
@@ -24,35 +18,20 @@ fn a_paraboloid_just_above_and_below_its_apex() {
             assert_eq!(verdict.roots.len(), 2, "{exponent}: {verdict:?}");
             let half = 10f64.powf(-0.5 * exponent as f64);
             for (root, t) in verdict.roots.iter().zip([4.0 - half, 4.0 + half]) {
-                assert!(
-                    (root.t - t).abs() < 1e-15 / half + 1e-14,
-                    "{exponent}: {verdict:?}"
-                );
+                assert!((root.t - t).abs() < 1e-15 / half + 1e-14, "{exponent}: {verdict:?}");
             }
-            assert!(
-                verdict.margin >= 1e-3 * 10f64.powi(-exponent),
-                "{exponent}: {verdict:?}"
-            );
+            assert!(verdict.margin >= 1e-3 * 10f64.powi(-exponent), "{exponent}: {verdict:?}");
             let height = offset * offset - 10f64.powi(-exponent);
             let lowered = [origin[0], origin[1], origin[2] + height];
             let verdict = oracle.trace(lowered, direction, 0.0, f64::INFINITY);
-            assert!(
-                verdict.roots.is_empty() && verdict.unresolved == 0,
-                "{exponent}: {verdict:?}"
-            );
-            assert!(
-                verdict.margin >= 1e-3 * 10f64.powi(-exponent),
-                "{exponent}: {verdict:?}"
-            );
+            assert!(verdict.roots.is_empty() && verdict.unresolved == 0, "{exponent}: {verdict:?}");
+            assert!(verdict.margin >= 1e-3 * 10f64.powi(-exponent), "{exponent}: {verdict:?}");
         }
     }
     // The tangent itself is nothing that f64 can decide, and must be said to be.
     let verdict = oracle.trace([-4.0, -0.5, 1.0], [1.0, 0.0, 0.0], 0.0, f64::INFINITY);
     assert!(verdict.margin < JUDGED, "{verdict:?}");
-    assert!(
-        verdict.unresolved > 0 || !verdict.roots.is_empty(),
-        "{verdict:?}"
-    );
+    assert!(verdict.unresolved > 0 || !verdict.roots.is_empty(), "{verdict:?}");
 }
 
 /// The graph z = Π (x - r_k) over the unit square, of one degree per root in u and `n` in v.
@@ -63,16 +42,8 @@ fn graph(roots: &[f64], n: usize) -> ModelSurface {
     for &r in roots {
         let degree = c.len();
         let product = |i: usize| {
-            let low = if i < degree {
-                (degree - i) as f64 * -r * c[i]
-            } else {
-                0.0
-            };
-            let high = if i > 0 {
-                i as f64 * (1.0 - r) * c[i - 1]
-            } else {
-                0.0
-            };
+            let low = if i < degree { (degree - i) as f64 * -r * c[i] } else { 0.0 };
+            let high = if i > 0 { i as f64 * (1.0 - r) * c[i - 1] } else { 0.0 };
             (low + high) / degree as f64
         };
         c = (0..=degree).map(product).collect();
@@ -83,30 +54,20 @@ fn graph(roots: &[f64], n: usize) -> ModelSurface {
             points.push([i as f64 / m as f64, j as f64 / n as f64, c[i], 1.0]);
         }
     }
-    ModelSurface {
-        degree_u: m,
-        degree_v: n,
-        rational: false,
-        points,
-    }
+    ModelSurface { number: 0, degree_u: m, degree_v: n, rational: false, points }
 }
 
 #[test]
 fn many_roots_on_one_ray() {
     for (count, n) in [(2, 1), (5, 3), (9, 2), (15, 15)] {
-        let roots: Vec<f64> = (0..count)
-            .map(|k| (k as f64 + 0.5) / count as f64)
-            .collect();
+        let roots: Vec<f64> = (0..count).map(|k| (k as f64 + 0.5) / count as f64).collect();
         let oracle = Oracle::new(&single(graph(&roots, n)));
         for scale in [1e-120, 1.0, 1e90] {
             let verdict = oracle.trace([-1.0, 0.3, 0.0], [scale, 0.0, 0.0], 0.0, f64::INFINITY);
             assert_eq!(verdict.roots.len(), count, "{verdict:?}");
             for (root, r) in verdict.roots.iter().zip(&roots) {
                 // The high degrees have coefficients that cancel: the graph is as steep as its blur says.
-                assert!(
-                    (root.t * scale - 1.0 - r).abs() < 1e-14 + 2.0 * root.blur,
-                    "{verdict:?}"
-                );
+                assert!((root.t * scale - 1.0 - r).abs() < 1e-14 + 2.0 * root.blur, "{verdict:?}");
                 assert!((root.u - r).abs() < 1e-9 && (root.v - 0.3).abs() < 1e-14);
             }
         }
@@ -124,12 +85,7 @@ fn poles_seams_and_corners_of_a_sphere_are_met_once() {
         let (sin, cos) = a.sin_cos();
         let normal = match n % 4 {
             0 => [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]][n % 8 / 4],
-            1 => [
-                [1.0, 0.0, 0.0],
-                [0.0, 1.0, 0.0],
-                [-1.0, 0.0, 0.0],
-                [0.0, -1.0, 0.0],
-            ][n / 4 % 4],
+            1 => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]][n / 4 % 4],
             2 => [cos, sin, 0.0],
             _ => [cos, 0.0, sin],
         };
@@ -141,11 +97,7 @@ fn poles_seams_and_corners_of_a_sphere_are_met_once() {
             continue;
         }
         assert_eq!(verdict.unresolved, 0, "{normal:?} {verdict:?}");
-        let near = verdict
-            .roots
-            .iter()
-            .filter(|r| (r.t - 8.0).abs() * norm(d) < 1e-13 + 6.0 * r.blur)
-            .count();
+        let near = verdict.roots.iter().filter(|r| (r.t - 8.0).abs() * norm(d) < 1e-13 + 6.0 * r.blur).count();
         assert_eq!(near, 1, "{normal:?}: {verdict:?}");
         let expected = meet_sphere(origin, unit(d), centre, radius).0;
         let ahead = expected.iter().filter(|&&t| t > 1e-9).count();
@@ -161,14 +113,7 @@ fn borders_and_corners_of_a_square_belong_to_it() {
     let square = parallelogram([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
     for surface in [square.clone(), elevate(&square, 3, 3)] {
         let oracle = Oracle::new(&single(surface));
-        for (x, y) in [
-            (0.0, 0.0),
-            (1.0, 1.0),
-            (1.0, 0.0),
-            (0.5, 1.0),
-            (0.0, 0.3),
-            (0.25, 0.5),
-        ] {
+        for (x, y) in [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.5, 1.0), (0.0, 0.3), (0.25, 0.5)] {
             let verdict = oracle.trace([x, y, 2.0], [0.0, 0.0, -0.5], 0.0, f64::INFINITY);
             let [root] = verdict.roots[..] else {
                 panic!("{x} {y}: {verdict:?}");
@@ -216,32 +161,14 @@ fn doubled_surfaces_count_once() {
 fn odd_input_ends_and_is_said_to_be_undecided() {
     // All points one point: met or missed.
     let point = Oracle::new(&single(parallelogram([1.0, 2.0, 3.0], [0.0; 3], [0.0; 3])));
-    assert_eq!(
-        point
-            .trace([1.0, 2.0, 0.0], [0.0, 0.0, 1.0], 0.0, 9.0)
-            .roots
-            .len(),
-        1
-    );
-    assert!(
-        point
-            .trace([1.0, 2.5, 0.0], [0.0, 0.0, 1.0], 0.0, 9.0)
-            .roots
-            .is_empty()
-    );
+    assert_eq!(point.trace([1.0, 2.0, 0.0], [0.0, 0.0, 1.0], 0.0, 9.0).roots.len(), 1);
+    assert!(point.trace([1.0, 2.5, 0.0], [0.0, 0.0, 1.0], 0.0, 9.0).roots.is_empty());
     // Rays within the plane of a flat surface, with straight and with curved parameter lines.
     let flat = bumpy(3, [4, 4], [0.0; 3], 2.0, 0.0);
-    for surface in [
-        parallelogram([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]),
-        flat,
-    ] {
+    for surface in [parallelogram([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), flat] {
         let oracle = Oracle::new(&single(surface));
         let verdict = oracle.trace([-3.0, 0.1, 0.0], [1.0, 0.05, 0.0], 0.0, f64::INFINITY);
-        assert!(
-            verdict.unresolved > 0 && verdict.margin == 0.0,
-            "{:?}",
-            verdict.margin
-        );
+        assert!(verdict.unresolved > 0 && verdict.margin == 0.0, "{:?}", verdict.margin);
         let above = oracle.trace([-3.0, 0.1, 1e-9], [1.0, 0.05, 0.0], 0.0, f64::INFINITY);
         assert!(above.unresolved == 0 && above.roots.is_empty() && above.margin > 1e-10);
     }
@@ -265,7 +192,7 @@ fn an_answer_outlasts_a_displacement_within_its_margin() {
     let mut random = Random(19);
     let mut surfaces = sphere([0.0; 3], 1.0).surfaces;
     surfaces.extend((0..4).map(|k| bumpy(k, [3, 4], [0.4 * k as f64 - 0.6, 0.2, 0.0], 1.5, 1.5)));
-    let model = Model { surfaces };
+    let model = Model::numbered(surfaces);
     let oracle = Oracle::new(&model);
     let corner = |pick: fn(f64, f64) -> f64, k: usize| {
         let points = model.surfaces.iter().flat_map(|s| &s.points);
@@ -276,17 +203,9 @@ fn an_answer_outlasts_a_displacement_within_its_margin() {
     for _ in 0..4000 {
         let (origin, d) = toward(&mut random, [0.0; 3], 1.2);
         let verdict = oracle.trace(origin, d, 0.0, f64::INFINITY);
-        let moved = add(
-            origin,
-            0.95 * verdict.margin * diagonal,
-            tangent(&mut random, d),
-        );
+        let moved = add(origin, 0.95 * verdict.margin * diagonal, tangent(&mut random, d));
         let other = oracle.trace(moved, d, 0.0, f64::INFINITY);
-        assert_eq!(
-            verdict.roots.is_empty(),
-            other.roots.is_empty(),
-            "{verdict:?} {other:?}"
-        );
+        assert_eq!(verdict.roots.is_empty(), other.roots.is_empty(), "{verdict:?} {other:?}");
         let (Some(a), Some(b)) = (verdict.roots.first(), other.roots.first()) else {
             misses += 1;
             continue;
@@ -295,10 +214,7 @@ fn an_answer_outlasts_a_displacement_within_its_margin() {
         // The closest root moved along its own sheet: its place on its surface, or its neighbour's, is near.
         let far = (a.u - b.u).abs().max((a.v - b.v).abs());
         assert!(a.surface != b.surface || far < 0.3, "{verdict:?} {other:?}");
-        assert!(
-            a.surface == b.surface || (a.surface < 8 && b.surface < 8),
-            "{verdict:?} {other:?}"
-        );
+        assert!(a.surface == b.surface || (a.surface < 8 && b.surface < 8), "{verdict:?} {other:?}");
     }
     assert!(hits > 1000 && misses > 500, "{hits} {misses}");
 }

@@ -2,18 +2,12 @@
 
 use crate::truth::*;
 use patchray_host::oracle::Oracle;
-use patchray_host::scene::shapes::{
-    Random, bilinear, cylinder, elevate, parallelogram, single, sphere, torus,
-};
+use patchray_host::scene::shapes::{Random, bilinear, cylinder, elevate, parallelogram, single, sphere, torus};
 
 #[test]
 fn spheres_at_any_place_and_size() {
     let mut random = Random(11);
-    for (centre, radius) in [
-        ([0.5, -1.0, 2.0], 1.5),
-        ([0.0; 3], 1e-6),
-        ([3e5, -1e5, 2e5], 1e5),
-    ] {
+    for (centre, radius) in [([0.5, -1.0, 2.0], 1.5), ([0.0; 3], 1e-6), ([3e5, -1e5, 2e5], 1e5)] {
         let oracle = Oracle::new(&sphere(centre, radius));
         let diagonal = 12f64.sqrt() * radius;
         let mut tally = Tally::default();
@@ -22,19 +16,10 @@ fn spheres_at_any_place_and_size() {
             let (mut truth, clearance) = meet_sphere(origin, d, centre, radius);
             let verdict = oracle.trace(origin, d, 0.0, f64::INFINITY);
             truth.retain(|&t| t >= 0.0);
-            tally.add(
-                "sphere",
-                &verdict,
-                &truth,
-                diagonal,
-                clearance.abs() > 1e-10 * radius,
-            );
+            tally.add("sphere", &verdict, &truth, diagonal, clearance.abs() > 1e-10 * radius);
             let bound = clearance.abs() / diagonal;
             let ahead = dot(sub(centre, origin), d) > radius;
-            assert!(
-                !ahead || verdict.margin <= 1.01 * bound + 1e-14,
-                "{verdict:?} {bound}"
-            );
+            assert!(!ahead || verdict.margin <= 1.01 * bound + 1e-14, "{verdict:?} {bound}");
         }
         tally.expect(0.999, 0.99, [0.4, 0.9]);
     }
@@ -58,10 +43,7 @@ fn rays_that_graze_a_sphere() {
             let verdict = oracle.trace(origin, d, 0.0, f64::INFINITY);
             tally.add("graze", &verdict, &truth, diagonal, verdict.margin > JUDGED);
             let bound = clearance.abs() / diagonal;
-            assert!(
-                verdict.margin <= 1.01 * bound + 1e-14,
-                "{verdict:?} {bound}"
-            );
+            assert!(verdict.margin <= 1.01 * bound + 1e-14, "{verdict:?} {bound}");
             least = least.min(verdict.margin / bound);
             if truth.is_empty() && verdict.roots.is_empty() {
                 continue;
@@ -92,10 +74,7 @@ fn a_cylinder_and_its_open_ends() {
         let distance = foot[0].hypot(foot[1]);
         let c = (distance - radius) * (distance + radius);
         let linear = foot[0] * d[0] + foot[1] * d[1];
-        let mut truth: Vec<f64> = quadratic(a, linear, c)
-            .iter()
-            .map(|s| nearest + s)
-            .collect();
+        let mut truth: Vec<f64> = quadratic(a, linear, c).iter().map(|s| nearest + s).collect();
         let mut complete = c.abs() > 1e-9;
         truth.retain(|&t| {
             let z = (from[2] + t * d[2]).abs() - 0.5 * height;
@@ -120,11 +99,7 @@ fn meet_torus(origin: Vector, d: Vector, major: f64, minor: f64) -> (Vec<f64>, b
     let q = -8.0 * major * major * (o[0] * d[0] + o[1] * d[1]);
     let reach = 2.0 * (major + minor);
     let slope = |s: f64| 4.0 * s * s * s + 2.0 * p * s + q;
-    let turns: Vec<f64> = if p < 0.0 {
-        vec![-(-p / 6.0).sqrt(), (-p / 6.0).sqrt()]
-    } else {
-        Vec::new()
-    };
+    let turns: Vec<f64> = if p < 0.0 { vec![-(-p / 6.0).sqrt(), (-p / 6.0).sqrt()] } else { Vec::new() };
     let extrema = bisect(&turns, reach, slope);
     let distance = |s: f64| {
         let [x, y, z] = add(o, s, d);
@@ -207,18 +182,13 @@ fn meet_bilinear(origin: Vector, d: Vector, corners: [Vector; 4]) -> (Vec<f64>, 
     let mut clear = (b * b - 4.0 * a * c).abs() > 1e-9;
     let mut roots = Vec::new();
     for v in quadratic(a, 0.5 * b, c) {
-        let plane = if (x[1] + x[3] * v).abs() > (y[1] + y[3] * v).abs() {
-            x
-        } else {
-            y
-        };
+        let plane = if (x[1] + x[3] * v).abs() > (y[1] + y[3] * v).abs() { x } else { y };
         let u = -(plane[0] + plane[2] * v) / (plane[1] + plane[3] * v);
         let outside = (u - 0.5).abs().max((v - 0.5).abs()) - 0.5;
         clear &= outside.abs() > 1e-9;
         if outside <= 0.0 {
-            let point = [0, 1, 2].map(|k| {
-                (1.0 - u) * ((1.0 - v) * p[k] + v * q[k]) + u * ((1.0 - v) * r[k] + v * s[k])
-            });
+            let point =
+                [0, 1, 2].map(|k| (1.0 - u) * ((1.0 - v) * p[k] + v * q[k]) + u * ((1.0 - v) * r[k] + v * s[k]));
             roots.push(dot(point, d));
         }
     }
@@ -233,8 +203,8 @@ fn bilinear_surfaces_of_any_degree() {
     let mut two = 0;
     let mut tally = Tally::default();
     for n in 0..300 {
-        let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)]
-            .map(|(x, y)| add([x, y, 0.0], 1.4, random.point(1.0)));
+        let corners =
+            [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)].map(|(x, y)| add([x, y, 0.0], 1.4, random.point(1.0)));
         let surface = bilinear(corners);
         let degrees = [[1, 1], [3, 3], [2, 5], [1, 7]][n % 4];
         let oracle = Oracle::new(&single(elevate(&surface, degrees[0], degrees[1])));
@@ -261,12 +231,7 @@ fn planes_of_any_degree_and_uneven_weights() {
         point[3] = [1.0, 31.0, 0.04][k / 4] * [1.0, 25.0, 2.0, 0.5][k % 4];
     }
     let normal = cross(along_u, along_v);
-    for surface in [
-        plane.clone(),
-        elevate(&plane, 1, 4),
-        elevate(&plane, 15, 15),
-        heavy,
-    ] {
+    for surface in [plane.clone(), elevate(&plane, 1, 4), elevate(&plane, 15, 15), heavy] {
         let oracle = Oracle::new(&single(surface));
         let mut tally = Tally::default();
         for _ in 0..1000 {
@@ -279,11 +244,7 @@ fn planes_of_any_degree_and_uneven_weights() {
             let u = dot(cross(at, along_v), normal) / area;
             let v = dot(cross(along_u, at), normal) / area;
             let outside = (u - 0.5).abs().max((v - 0.5).abs()) - 0.5;
-            let truth: Vec<f64> = if outside <= 0.0 && t >= 0.0 {
-                vec![t]
-            } else {
-                vec![]
-            };
+            let truth: Vec<f64> = if outside <= 0.0 && t >= 0.0 { vec![t] } else { vec![] };
             let verdict = oracle.trace(origin, d, 0.0, f64::INFINITY);
             tally.add("plane", &verdict, &truth, 3.0, outside.abs() > 1e-9);
         }

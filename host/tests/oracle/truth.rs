@@ -21,11 +21,7 @@ pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
 }
 
 pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 pub(crate) fn norm(a: Vector) -> f64 {
@@ -50,11 +46,7 @@ pub(crate) fn quadratic(a: f64, b: f64, c: f64) -> Vec<f64> {
         return Vec::new();
     }
     let q = -(b + discriminant.sqrt().copysign(b));
-    let mut roots = if q == 0.0 {
-        vec![0.0, 0.0]
-    } else {
-        vec![q / a, c / q]
-    };
+    let mut roots = if q == 0.0 { vec![0.0, 0.0] } else { vec![q / a, c / q] };
     roots.retain(|r| r.is_finite());
     roots.sort_by(f64::total_cmp);
     roots
@@ -74,53 +66,29 @@ pub(crate) struct Tally {
 impl Tally {
     /// Compares a verdict on a ray with a direction of length 1 with the true roots, sorted. `complete` says that the
     /// number of true roots is beyond doubt.
-    pub(crate) fn add(
-        &mut self,
-        what: &str,
-        verdict: &Verdict,
-        truth: &[f64],
-        size: f64,
-        complete: bool,
-    ) {
+    pub(crate) fn add(&mut self, what: &str, verdict: &Verdict, truth: &[f64], size: f64, complete: bool) {
         self.rays += 1;
         for pair in verdict.roots.windows(2) {
-            assert!(
-                pair[0].t < pair[1].t,
-                "{what}: not sorted, or one root twice: {verdict:?}"
-            );
+            assert!(pair[0].t < pair[1].t, "{what}: not sorted, or one root twice: {verdict:?}");
         }
         let mut compare = |t: f64, root: &patchray_host::oracle::Root| {
             let error = (t - root.t).abs() / size;
-            assert!(
-                error <= 1e-14 + root.blur,
-                "{what}: off by {error}: {verdict:?} {truth:?}"
-            );
+            assert!(error <= 1e-14 + root.blur, "{what}: off by {error}: {verdict:?} {truth:?}");
             // The blur is rounding over the cosine: large only near a silhouette.
-            assert!(
-                root.blur < 1e-10 || root.margin < 1e-7,
-                "{what}: {verdict:?}"
-            );
+            assert!(root.blur < 1e-10 || root.margin < 1e-7, "{what}: {verdict:?}");
             self.worst = self.worst.max(error / root.blur);
         };
         if verdict.margin >= JUDGED {
             self.judged += 1;
             self.hits += usize::from(!truth.is_empty());
-            assert_eq!(
-                truth.is_empty(),
-                verdict.roots.is_empty(),
-                "{what}: {verdict:?} {truth:?}"
-            );
+            assert_eq!(truth.is_empty(), verdict.roots.is_empty(), "{what}: {verdict:?} {truth:?}");
             if let (Some(&t), Some(root)) = (truth.first(), verdict.roots.first()) {
                 compare(t, root);
             }
         }
         if complete && verdict.unresolved == 0 && verdict.roots.iter().all(|r| r.margin >= JUDGED) {
             self.complete += 1;
-            assert_eq!(
-                truth.len(),
-                verdict.roots.len(),
-                "{what}: {verdict:?} {truth:?}"
-            );
+            assert_eq!(truth.len(), verdict.roots.len(), "{what}: {verdict:?} {truth:?}");
             for (&t, root) in truth.iter().zip(&verdict.roots) {
                 compare(t, root);
             }
@@ -133,10 +101,7 @@ impl Tally {
         println!("{self:?}");
         assert!(part(self.judged) >= judged, "{self:?}");
         assert!(part(self.complete) >= complete, "{self:?}");
-        assert!(
-            part(self.hits) > hits[0] && part(self.hits) < hits[1],
-            "{self:?}"
-        );
+        assert!(part(self.hits) > hits[0] && part(self.hits) < hits[1], "{self:?}");
     }
 }
 
@@ -148,21 +113,12 @@ pub(crate) fn toward(random: &mut Random, centre: Vector, size: f64) -> (Vector,
 }
 
 /// The parameters where a ray with a direction of length 1 meets a sphere, and the distance from its silhouette.
-pub(crate) fn meet_sphere(
-    origin: Vector,
-    d: Vector,
-    centre: Vector,
-    radius: f64,
-) -> (Vec<f64>, f64) {
+pub(crate) fn meet_sphere(origin: Vector, d: Vector, centre: Vector, radius: f64) -> (Vec<f64>, f64) {
     let from = sub(origin, centre);
     let nearest = -dot(from, d);
     let foot = add(from, nearest, d);
     let distance = norm(foot);
     let half = (radius - distance) * (radius + distance);
-    let roots = if half < 0.0 {
-        Vec::new()
-    } else {
-        vec![nearest - half.sqrt(), nearest + half.sqrt()]
-    };
+    let roots = if half < 0.0 { Vec::new() } else { vec![nearest - half.sqrt(), nearest + half.sqrt()] };
     (roots, radius - distance)
 }
