@@ -4,9 +4,9 @@
 //! on the two planes first; ours evaluates the surface in space and projects point and derivatives (a departure: for the
 //! two or three evaluations that a solve takes, projecting the net costs more than the third coordinate).
 //!
-//! A step is judged by what it leaves: by Taylor's theorem a step of (du, dv) leaves at most
-//! [`Surface::bend`](crate::surface::Surface::bend) · (|du| + |dv|)², so the last step needs no evaluation after it. A
-//! small step alone is never enough.
+//! A step is judged by what it leaves, which Taylor's theorem bounds before it is taken
+//! ([`Net::bend`](crate::surface::Net::bend)), so the last step needs no evaluation after it. A small step alone is never
+//! enough.
 
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::planes::Planes;
@@ -78,8 +78,9 @@ pub fn solve<P: Point>(
         let du = along_v.cross(&point) * inverse;
         let dv = point.cross(&along_u) * inverse;
         let (next_u, next_v) = (u + du, v + dv);
-        let length = du.abs() + dv.abs();
-        if surface.bend * length * length <= limits.tolerance {
+        let [bend_uu, bend_uv, bend_vv] = surface.bend;
+        let left = bend_uu * (du * du) + bend_uv * (du * dv).abs() + bend_vv * (dv * dv);
+        if left <= limits.tolerance {
             // Converged; what is left to see is whether the root lies on the surface or beyond its edge.
             if !(on_surface(next_u) && on_surface(next_v)) {
                 return Ok(None);

@@ -12,9 +12,9 @@
 //! give eq. (1), the point where the ray meets the parallelogram, and where it enters and leaves the box.
 
 use crate::frame::Aabb;
-use crate::planes::{Columns, DepthRange, Planes};
+use crate::planes::{CENTRE, Columns, DepthRange, Planes};
 use crate::scalar::{Scalar, Vector3};
-use crate::surface::{Net, Point};
+use crate::surface::{Net, Point, SHEAR};
 
 /// How often a surface may be halved in each direction: domains are then exact in both number types, and fit 16 bits.
 pub const MAX_LEVEL: u32 = 14;
@@ -23,9 +23,6 @@ pub const MAX_LEVEL: u32 = 14;
 /// by ρ lengthens its edges by ρ over this sine, so smaller values make slivers fatter; larger ones spoil the starts on
 /// sheared patches.
 const LEAST_SINE: f64 = 0.05;
-
-/// Just above √3, by which sheared planes may lengthen a vector.
-const SHEAR: f64 = 1.7321;
 
 /// A part of a surface's domain by repeated halving: `[i, i + 1] / 2^level` in each direction, held as `2^level + i`.
 /// Half-open, but for the last one, so that each (u, v) lies in exactly one patch.
@@ -111,8 +108,9 @@ fn width<S: Scalar>(index: u16) -> S {
 
 /// A box with skew sides: centre ± e1 ± e2 ± e3, in the frame; e1, e2, e3 are along v1, v2 and v1 × v2.
 ///
-/// For each coordinate axis the four numbers centre, e1, e2, e3 stand together: the ray test multiplies the four of the
-/// ray's steepest axis by one slope and subtracts them from the four of another, which vector units do at once.
+/// For each coordinate axis the four numbers e1, e2, centre, e3 stand together, in this order: the ray test multiplies the
+/// four of the ray's steepest axis by one slope and subtracts them from the four of another, and then multiplies the pair
+/// (e1, e2) by one number each of the pair (centre, e3). Vector units take them two or four at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Parallelepiped<S> {
@@ -139,7 +137,7 @@ const SIDE_STEPS: u32 = 2048;
 pub struct Crossing<S> {
     /// Of e1 and e2: |f| + |g|.
     lengths: [S; 2],
-    /// Depths of the centre, and of e1, e2 and e3.
+    /// Depths of e1, e2, the centre and e3.
     depths: [S; 4],
     /// e2 × e3, e3 × e1, e1 × e2: the ray's direction in the box's coordinates, up to a factor.
     along: [S; 3],
@@ -162,22 +160,25 @@ impl<S: Scalar> Parallelepiped<S> {
 
     fn new(centre: S::Vec3, edges: [S::Vec3; 3]) -> Self {
         let [c, e1, e2, e3] = [centre, edges[0], edges[1], edges[2]].map(Vector3::to_array);
-        Parallelepiped { axes: core::array::from_fn(|k| [c[k], e1[k], e2[k], e3[k]]) }
+        Parallelepiped { axes: core::array::from_fn(|k| [e1[k], e2[k], c[k], e3[k]]) }
     }
 
     /// Whether a ray, as a whole line, meets the box; and how.
     #[inline(always)]
     pub fn crossing(&self, planes: &Planes<S>) -> Option<Crossing<S>> {
         let Columns { f, g, depth } = planes.columns(&self.axes);
-        let [fc, f1, f2, f3] = f;
-        let [gc, g1, g2, g3] = g;
-        let along = [f2 * g3 - g2 * f3, f3 * g1 - g3 * f1, f1 * g2 - g1 * f2];
-        let offset = [fc * g1 - gc * f1, fc * g2 - gc * f2, fc * g3 - gc * f3];
-        let [a1, a2, a3] = along.map(S::abs);
+        let [f1, f2, fc, f3] = f;
+        let [g1, g2, gc, g3] = g;
+        // c × e1 and c × e2; e3 × e1 and e3 × e2; then e1 × e2 and c × e3.
+        let [o1, o2] = [fc * g1 - gc * f1, fc * g2 - gc * f2];
+        let [t1, t2] = [f3 * g1 - g3 * f1, f3 * g2 - g3 * f2];
+        let (n3, o3) = (f1 * g2 - f2 * g1, fc * g3 - f3 * gc);
+        let a3 = n3.abs();
         // A NaN, from lent memory that nobody filled, fails all three.
-        let inside = (offset[0].abs() <= a3 + a2) & (offset[1].abs() <= a3 + a1) & (offset[2].abs() <= a1 + a2);
+        let inside = (o1.abs() <= t1.abs() + a3) & (o2.abs() <= t2.abs() + a3) & (o3.abs() <= t1.abs() + t2.abs());
         if inside {
-            Some(Crossing { lengths: [f1.abs() + g1.abs(), f2.abs() + g2.abs()], depths: depth, along, offset })
+            let lengths = [f1.abs() + g1.abs(), f2.abs() + g2.abs()];
+            Some(Crossing { lengths, depths: depth, along: [-t2, t1, n3], offset: [o1, o2, o3] })
         } else {
             None
         }
@@ -191,10 +192,10 @@ impl<S: Scalar> Parallelepiped<S> {
 
     /// The box along the axes around it.
     pub fn aabb(&self) -> Aabb<S> {
-        let reach = self.axes.map(|[_, e1, e2, e3]| e1.abs() + e2.abs() + e3.abs());
+        let reach = self.axes.map(|[e1, e2, _, e3]| e1.abs() + e2.abs() + e3.abs());
         Aabb {
-            low: core::array::from_fn(|k| self.axes[k][0] - reach[k]),
-            high: core::array::from_fn(|k| self.axes[k][0] + reach[k]),
+            low: core::array::from_fn(|k| self.axes[k][CENTRE] - reach[k]),
+            high: core::array::from_fn(|k| self.axes[k][CENTRE] + reach[k]),
         }
     }
 }
@@ -203,7 +204,7 @@ impl<S: Scalar> Crossing<S> {
     /// Whether the box's depths overlap a range; coarse, but never wrong when it says no.
     #[inline(always)]
     pub fn overlaps(&self, range: &DepthRange<S>) -> bool {
-        let [centre, e1, e2, e3] = self.depths;
+        let [e1, e2, centre, e3] = self.depths;
         let reach = e1.abs() + e2.abs() + e3.abs();
         centre - reach <= range.max && centre + reach >= range.min
     }
@@ -253,7 +254,7 @@ impl<S: Scalar> Crossing<S> {
         }
         let at = |s: S| {
             let place: [S; 3] = core::array::from_fn(|k| base[k] + step[k] * s);
-            let [centre, e1, e2, e3] = self.depths;
+            let [e1, e2, centre, e3] = self.depths;
             let depth = centre + place[0] * e1 + place[1] * e2 + place[2] * e3;
             Pierce { local: [place[0], place[1]], depth }
         };

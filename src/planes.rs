@@ -28,8 +28,9 @@ pub struct Planes<S> {
     origin: [S; 3],
     /// The origin in the order of `axes`: kept so because reordering it per point would go through memory.
     ordered: [S; 3],
-    /// What the two planes make of the origin.
-    constant: [S; 2],
+    /// What the two planes, and depth, make of the origin; for a box's three vectors 0, which is subtracted as well: four
+    /// equal operations cost vector units less than one that differs.
+    constants: [[S; 4]; 3],
     /// ±1: the direction along the steepest axis, per unit of depth.
     forward: S,
     direction: [S; 3],
@@ -39,7 +40,10 @@ pub struct Planes<S> {
     interval: Interval<S>,
 }
 
-/// A point and three vectors in the two planes' system, side by side.
+/// The place of the centre among a box's four numbers of an axis, the others being its three vectors'.
+pub(crate) const CENTRE: usize = 2;
+
+/// A box's three vectors and its centre in the two planes' system, side by side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns<S> {
     pub(crate) f: [S; 4],
@@ -88,9 +92,12 @@ impl<S: Scalar> Planes<S> {
         let forward = axis.of(&direction);
         let slopes = [first.of(&direction) * forward, second.of(&direction) * forward];
         let ordered = [axis.of(&origin), first.of(&origin), second.of(&origin)];
-        let constant = [ordered[1] - slopes[0] * ordered[0], ordered[2] - slopes[1] * ordered[0]];
+        let mut constants = [[S::ZERO; 4]; 3];
+        constants[0][CENTRE] = ordered[1] - slopes[0] * ordered[0];
+        constants[1][CENTRE] = ordered[2] - slopes[1] * ordered[0];
+        constants[2][CENTRE] = ordered[0] * forward;
         Planes {
-            constant,
+            constants,
             axes: [axis, first, second],
             slopes,
             origin,
@@ -134,20 +141,19 @@ impl<S: Scalar> Planes<S> {
         self.shear(steep.of(point) - o, first.of(point) - o1, second.of(point) - o2)
     }
 
-    /// A point and three vectors at once, given by their components along each axis: see [`Columns`].
+    /// A box's three vectors and its centre at once, given by their components along each axis.
     ///
     /// The origin enters as one constant per plane, rounded once more than in [`Planes::point`].
     #[inline(always)]
     pub(crate) fn columns(&self, axes: &[[S; 4]; 3]) -> Columns<S> {
         let [steep, first, second] = self.axes.map(|axis| &axes[axis as usize]);
         let [slope1, slope2] = self.slopes;
-        let mut f: [S; 4] = core::array::from_fn(|k| first[k] - slope1 * steep[k]);
-        let mut g: [S; 4] = core::array::from_fn(|k| second[k] - slope2 * steep[k]);
-        f[0] = f[0] - self.constant[0];
-        g[0] = g[0] - self.constant[1];
-        let mut depth = steep.map(|along| along * self.forward);
-        depth[0] = depth[0] - self.ordered[0] * self.forward;
-        Columns { f, g, depth }
+        let [c1, c2, c3] = &self.constants;
+        Columns {
+            f: core::array::from_fn(|k| first[k] - slope1 * steep[k] - c1[k]),
+            g: core::array::from_fn(|k| second[k] - slope2 * steep[k] - c2[k]),
+            depth: core::array::from_fn(|k| steep[k] * self.forward - c3[k]),
+        }
     }
 
     /// A control point or a sum of them, times its weight (1 for a plain one): f, g and depth are multiplied by it too.

@@ -231,7 +231,7 @@ macro_rules! scalar {
 }
 
 scalar!(f32, Vec3, libm::sqrtf, libm::scalbnf, libm::frexpf, 4e-6);
-scalar!(f64, DVec3, libm::sqrt, libm::scalbn, libm::frexp, 1e-13);
+scalar!(f64, DVec3, libm::sqrt, libm::scalbn, libm::frexp, 4e-13);
 
 #[cfg(test)]
 mod tests {

@@ -20,7 +20,7 @@ pub struct SurfaceSlot<S> {
     /// The box of its control points, in the frame, padded.
     bounds: Aabb<S>,
     /// See [`Net::bend`].
-    bend: S,
+    bend: [S; 3],
     /// The first of its control points.
     first: u32,
     degree_u: u32,
@@ -29,7 +29,8 @@ pub struct SurfaceSlot<S> {
 
 impl<S: Scalar> SurfaceSlot<S> {
     /// What a slot holds before it is filled.
-    pub const EMPTY: Self = SurfaceSlot { bounds: Aabb::ORIGIN, bend: S::ZERO, first: 0, degree_u: 0, degree_v: 0 };
+    pub const EMPTY: Self =
+        SurfaceSlot { bounds: Aabb::ORIGIN, bend: [S::ZERO; 3], first: 0, degree_u: 0, degree_v: 0 };
 }
 
 /// Lent memory for a scene.
@@ -149,8 +150,8 @@ impl<'m, P: Point> Scene<'m, P> {
             for point in net.points() {
                 points.push(point.rescaled(frame.exponent(), weight));
             }
-            let bend = points.since(first as usize).map_or(P::Scalar::ZERO, |scaled| {
-                Net::new(net.degree_u(), net.degree_v(), &*scaled).map_or(P::Scalar::ZERO, |net| net.bend())
+            let bend = points.since(first as usize).map_or([P::Scalar::ZERO; 3], |scaled| {
+                Net::new(net.degree_u(), net.degree_v(), &*scaled).map_or([P::Scalar::ZERO; 3], |net| net.bend())
             });
             let (degree_u, degree_v) = (net.degree_u() as u32, net.degree_v() as u32);
             surfaces.push(SurfaceSlot { bounds: boxes(k), bend, first, degree_u, degree_v });
@@ -262,12 +263,12 @@ impl<'m, P: Point> Scene<'m, P> {
         let Some((planes, range)) = self.header.frame.enter(ray, interval) else {
             return Ok(None);
         };
-        let (origin, direction, inverse) = (planes.origin(), planes.direction(), planes.inverse());
+        let (origin, inverse) = (planes.origin(), planes.inverse());
         let mut best: Option<(Root<P::Scalar>, u32)> = None;
         let mut farthest = range.max;
         let mut trace = || -> Result<(), Limit> {
             let grid = Grid::new(&self.header.grid, self.offsets, self.references).ok_or(Limit::Slot)?;
-            let mut walk = grid.walk(&origin, &direction, &inverse, range.max);
+            let mut walk = grid.walk(&origin, &inverse, range.max);
             // Ends with the walk, or where no later voxel can hold a closer root.
             while let Some(voxel) = walk.advance() {
                 let voxel = voxel.map_err(|()| Limit::Slot)?;

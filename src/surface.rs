@@ -465,55 +465,46 @@ pub struct Surface<'m, P: Point> {
     /// Its control net, in the frame.
     pub net: Net<'m, P>,
     /// See [`Net::bend`].
-    pub bend: P::Scalar,
+    pub bend: [P::Scalar; 3],
 }
 
 impl<P: Point> Net<'_, P> {
-    /// A bound b such that one Newton step (du, dv) from anywhere leaves a distance of at most b · (|du| + |dv|)² to the
-    /// ray, by Taylor's theorem: half the largest second derivative, from second differences of the control points, times
-    /// the √3 of sheared planes. For nets in the frame, where coordinates are below 1.
+    /// Bounds b such that one Newton step (du, dv) from anywhere leaves a distance of at most
+    /// `b[0] · du² + b[1] · |du dv| + b[2] · dv²` to the ray, by Taylor's theorem: from the second differences of the control
+    /// points, which bound the second derivatives, times the √3 of sheared planes. For nets in the frame, where coordinates
+    /// are below 1.
     ///
     /// A rational surface's numerator and weight are bounded apart, over the smallest weight; the ray's origin adds up to
     /// √3 · √3 times the weight's part.
-    pub fn bend(&self) -> P::Scalar {
+    pub fn bend(&self) -> [P::Scalar; 3] {
         let scalar = |k: usize| P::Scalar::from_u32(k as u32);
-        let (n, m, columns) = (self.degree_u, self.degree_v, self.degree_v + 1);
-        let (mut position, mut weight) = (P::Scalar::ZERO, P::Scalar::ZERO);
-        let mut take = |difference: P, factor: usize| {
-            let length = V::<P>::from_array(difference.weighted_position()).length();
-            position = position.greater(length * scalar(factor));
-            if P::RATIONAL {
-                weight = weight.greater(difference.weight().abs() * scalar(factor));
-            }
-        };
-        let from = |k: usize| self.points.iter().skip(k).copied();
-        for ((a, b), c) in from(0).zip(from(columns)).zip(from(2 * columns)) {
-            take(a - b - (b - c), n * (n - 1));
-        }
-        for row in self.rows() {
-            let along = |k: usize| row.iter().skip(k).copied();
-            for ((a, b), c) in along(0).zip(along(1)).zip(along(2)) {
-                take(a - b - (b - c), m * (m - 1));
-            }
-        }
-        for (row, next) in self.rows().zip(self.rows().skip(1)) {
-            for k in 0..self.degree_v {
-                if let (Some(&a), Some(&b), Some(&c), Some(&d)) =
-                    (row.get(k), row.get(k + 1), next.get(k), next.get(k + 1))
-                {
-                    take(a - b - (c - d), n * m);
-                }
-            }
-        }
-        let root3 = P::Scalar::from_f64(1.7321);
-        let half = P::Scalar::HALF;
-        if !P::RATIONAL {
-            return position * root3 * half;
-        }
         let least = self.points.iter().fold(P::Scalar::INFINITY, |least, p| least.lesser(p.weight()));
-        (position * root3 + weight * P::Scalar::from_u32(3)) * half / least
+        let size = |difference: P| {
+            let position = V::<P>::from_array(difference.weighted_position()).length() * P::Scalar::from_f64(SHEAR);
+            if P::RATIONAL { (position + difference.weight().abs() * scalar(3)) / least } else { position }
+        };
+        let (n, m, columns) = (self.degree_u, self.degree_v, self.degree_v + 1);
+        let second = |points: &[P], stride: usize| {
+            let from = |k: usize| points.iter().skip(k * stride).copied();
+            let triples = from(0).zip(from(1)).zip(from(2));
+            triples.fold(P::Scalar::ZERO, |most, ((a, b), c)| most.greater(size(a - b - (b - c))))
+        };
+        let along_u = second(self.points, columns);
+        let along_v = self.rows().fold(P::Scalar::ZERO, |most, row| most.greater(second(row, 1)));
+        let mixed = self.rows().zip(self.rows().skip(1)).fold(P::Scalar::ZERO, |most, (row, next)| {
+            let quads = row.windows(2).zip(next.windows(2));
+            quads.fold(most, |most, (a, b)| match (a, b) {
+                (&[p, q], &[r, s]) => most.greater(size(p - q - (r - s))),
+                _ => most,
+            })
+        });
+        let half = P::Scalar::HALF;
+        [along_u * scalar(n * (n - 1)) * half, mixed * scalar(n * m), along_v * scalar(m * (m - 1)) * half]
     }
 }
+
+/// Just above √3, by which sheared planes may lengthen a vector.
+pub(crate) const SHEAR: f64 = 1.7321;
 
 type V<P> = <<P as Point>::Scalar as Scalar>::Vec3;
 

@@ -35,9 +35,8 @@ pub fn testing_ray<'m, S: Scalar>(
 ) -> Result<(), Limit> {
     let (origin, direction) = (planes.origin(), planes.direction());
     let start = core::array::from_fn(|k| origin[k] + direction[k] * root.depth);
-    let back = direction.map(|c| -c);
     let inverse = planes.inverse().map(|c| -c);
-    let mut walk = grid.walk(&start, &back, &inverse, root.depth - nearest);
+    let mut walk = grid.walk(&start, &inverse, root.depth - nearest);
     let range = DepthRange { min: nearest, max: root.depth };
     // Ends with the walk.
     while let Some(voxel) = walk.advance() {

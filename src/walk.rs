@@ -29,19 +29,30 @@ impl<'m, S: Scalar> Voxel<'m, S> {
 /// The way of a line through a grid, voxel by voxel.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk<'m, S> {
-    grid: Grid<'m, S>,
-    /// The voxel's index along each axis.
-    at: [u32; 3],
-    /// Where the line crosses the next wall across each axis.
-    next: [S; 3],
-    /// The number of walls of each axis crossed or about to be, and where the line crosses wall k: `base + k · step`.
-    walls: [S; 3],
-    base: [S; 3],
-    step: [S; 3],
-    forward: [bool; 3],
+    offsets: &'m [u32],
+    references: &'m [u32],
+    axes: [Across<S>; 3],
+    /// The voxel's number in the grid.
+    voxel: usize,
     length: S,
     came_from: u32,
     done: bool,
+}
+
+/// The walls across one axis, as the line meets them.
+#[derive(Clone, Copy, Debug)]
+struct Across<S> {
+    /// Where the line crosses the next wall: `base + wall · step`.
+    next: S,
+    base: S,
+    step: S,
+    wall: S,
+    /// What crossing it adds to the voxel's number, modulo 2⁶⁴ (or 2³²).
+    stride: usize,
+    /// How many more walls lie inside the grid.
+    left: u32,
+    /// The bit of the neighbour that lies behind the wall just crossed.
+    behind: u32,
 }
 
 impl<'m, S: Scalar> Grid<'m, S> {
@@ -56,92 +67,74 @@ impl<'m, S: Scalar> Grid<'m, S> {
             return None;
         }
         let start = core::array::from_fn(|k| origin[k] + direction[k] * begin);
-        Some((self.walk(&start, &direction, &inverse, end - begin), begin))
+        Some((self.walk(&start, &inverse, end - begin), begin))
     }
 
-    /// The walk along `start + s · direction` for s in [0, `length`]; `inverse` is 1 / `direction` by component. `start`
-    /// should be inside the grid, or so near that rounding explains it.
+    /// The walk along `start + s · direction` for s in [0, `length`], by the direction's `inverse`: 1 / its components,
+    /// infinite for those that are 0. `start` should be inside the grid, or so near that rounding explains it.
     #[inline(always)]
-    pub fn walk(&self, start: &[S; 3], direction: &[S; 3], inverse: &[S; 3], length: S) -> Walk<'m, S> {
+    pub fn walk(&self, start: &[S; 3], inverse: &[S; 3], length: S) -> Walk<'m, S> {
         let slot = self.slot;
-        let mut walk = Walk {
-            grid: *self,
-            at: [0; 3],
-            next: [S::INFINITY; 3],
-            walls: [S::ZERO; 3],
-            base: [S::ZERO; 3],
-            step: [S::ZERO; 3],
-            forward: [false; 3],
-            length,
-            came_from: 0,
-            done: slot.counts.contains(&0),
-        };
-        for k in 0..3 {
-            walk.at[k] = slot.index(start[k], k);
-            if direction[k] == S::ZERO || !inverse[k].is_finite() {
-                continue;
+        let strides = [1, slot.counts[0] as usize, slot.counts[0] as usize * slot.counts[1] as usize];
+        let mut voxel = 0_usize;
+        let axes = core::array::from_fn(|k| {
+            let at = slot.index(start[k], k);
+            voxel = voxel.wrapping_add(at as usize * strides[k]);
+            let forward = inverse[k] > S::ZERO;
+            // Walls are numbered in the line's direction, 0 being the one behind the first voxel.
+            let wall = if forward { at } else { at + 1 };
+            let base = (slot.bounds.low[k] + S::from_u32(wall) * slot.cell[k] - start[k]) * inverse[k];
+            let step = slot.cell[k] * inverse[k].abs();
+            let next = base + step;
+            Across {
+                // A line along the walls never crosses one; its base is infinite or NaN.
+                next: if inverse[k].is_finite() { next } else { S::INFINITY },
+                base,
+                step,
+                wall: S::ONE,
+                stride: if forward { strides[k] } else { strides[k].wrapping_neg() },
+                left: if forward { slot.counts[k].saturating_sub(at + 1) } else { at },
+                behind: 1 << (ITEM_BITS + 2 * k as u32 + u32::from(!forward)),
             }
-            // Walls are counted in the line's direction, from the one behind the first voxel.
-            walk.forward[k] = direction[k] > S::ZERO;
-            let wall = if walk.forward[k] { walk.at[k] } else { walk.at[k] + 1 };
-            walk.base[k] = (slot.bounds.low[k] + S::from_u32(wall) * slot.cell[k] - start[k]) * inverse[k];
-            walk.step[k] = slot.cell[k] * inverse[k].abs();
-            walk.walls[k] = S::ONE;
-            walk.next[k] = walk.base[k] + walk.step[k];
-        }
-        walk
+        });
+        let (offsets, references) = (self.offsets, self.references);
+        Walk { offsets, references, axes, voxel, length, came_from: 0, done: slot.counts.contains(&0) }
     }
 }
 
 impl<'m, S: Scalar> Walk<'m, S> {
     /// The next voxel; `Err` if the lent memory leads nowhere. Ends: each step crosses a wall, of which there are at most
-    /// [`GridSlot::longest_walk`].
+    /// [`GridSlot::longest_walk`](crate::grid::GridSlot::longest_walk).
     #[inline(always)]
     pub fn advance(&mut self) -> Option<Result<Voxel<'m, S>, ()>> {
         if self.done {
             return None;
         }
-        let counts = &self.grid.slot.counts;
-        let voxel = ((self.at[2] * counts[1] + self.at[1]) * counts[0] + self.at[0]) as usize;
-        let offsets = self.grid.offsets;
-        let references = match (offsets.get(voxel), offsets.get(voxel + 1)) {
-            (Some(&begin), Some(&end)) => self.grid.references.get(begin as usize..end as usize),
-            _ => None,
+        let references = match self.offsets.get(self.voxel..).and_then(<[u32]>::first_chunk) {
+            Some(&[begin, end]) => self.references.get(begin as usize..end as usize),
+            None => None,
         };
         let Some(references) = references else {
             self.done = true;
             return Some(Err(()));
         };
-        let [x, y, z] = self.next;
-        let axis = if x <= y {
-            if x <= z { 0 } else { 2 }
-        } else if y <= z {
-            1
-        } else {
-            2
-        };
-        let exit = self.next[axis];
+        // The nearest wall, without a branch: which axis it is cannot be foreseen.
+        let [x, y, z] = &self.axes;
+        let (first, nearer) = if y.next < x.next { (1, y.next) } else { (0, x.next) };
+        let axis = if z.next < nearer { 2 } else { first };
+        let across = &mut self.axes[axis];
+        let exit = across.next;
         let found = Voxel { references, came_from: self.came_from, exit: exit.lesser(self.length) };
         // A NaN ends the walk here.
-        if !(exit < self.length) || !self.cross_wall(axis) {
+        if !(exit < self.length) || across.left == 0 {
             self.done = true;
+            return Some(Ok(found));
         }
+        across.left -= 1;
+        across.wall += S::ONE;
+        across.next = across.base + across.wall * across.step;
+        self.voxel = self.voxel.wrapping_add(across.stride);
+        self.came_from = across.behind;
         Some(Ok(found))
-    }
-
-    /// Moves to the next voxel along an axis; false at the grid's border.
-    #[inline(always)]
-    fn cross_wall(&mut self, axis: usize) -> bool {
-        self.walls[axis] += S::ONE;
-        self.next[axis] = self.base[axis] + self.walls[axis] * self.step[axis];
-        if self.forward[axis] {
-            self.came_from = 1 << (ITEM_BITS + 2 * axis as u32);
-            self.at[axis] += 1;
-            self.at[axis] < self.grid.slot.counts[axis]
-        } else {
-            self.came_from = 1 << (ITEM_BITS + 2 * axis as u32 + 1);
-            self.at[axis] = self.at[axis].wrapping_sub(1);
-            self.at[axis] < self.grid.slot.counts[axis]
-        }
     }
 }
