@@ -15,6 +15,7 @@ pub mod limits;
 
 pub mod arena;
 
+pub mod bernstein;
 pub mod surface;
 
 pub mod frame;

@@ -1,17 +1,18 @@
-//! One Newton solve: a surface and a ray, from one start, in the two-dimensional system of the ray's planes.
+//! Newton's method: a surface and a ray, from one start, in the two-dimensional system of the ray's planes.
 //!
-//! Source: the paper's section "Performance Comparison of Barth and Stürzlinger's Algorithm". It projects the control net
-//! on the two planes first; ours evaluates the surface in space and projects point and derivatives (a departure: for the
-//! two or three evaluations that a solve takes, projecting the net costs more than the third coordinate).
+//! Source: the paper's section "Performance Comparison of Barth and Stürzlinger's Algorithm": the control net is projected
+//! on the two planes, once for all starts of a ray on a surface, and the two-dimensional system is solved on it.
 //!
 //! A step is judged by what it leaves, which Taylor's theorem bounds before it is taken
 //! ([`Net::bend`](crate::surface::Net::bend)), so the last step needs no evaluation after it. A small step alone is never
 //! enough.
 
+use crate::bernstein::{self, BasisView, Full};
 use crate::limits::{Limit, Limits, Work, spend};
-use crate::planes::Planes;
+use crate::planes::{Planes, project_net};
 use crate::scalar::Scalar;
-use crate::surface::{BasisView, Full, Point, Surface};
+use crate::surface::{Flat, Point, Surface};
+use heapless::vec::VecView;
 
 /// A root: where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,82 +27,116 @@ pub struct Root<S> {
     pub grazing: bool,
 }
 
-/// Solves from `start`; `None` if the iteration leads to no root, which does not prove that there is none.
-///
-/// The iteration may leave the patch that gave the start: it works on the whole surface.
-#[inline]
-pub fn solve<P: Point>(
-    surface: &Surface<'_, P>,
-    planes: &Planes<P::Scalar>,
-    start: [P::Scalar; 2],
-    limits: &Limits<P::Scalar>,
-    work: &mut Work,
-    basis: &mut BasisView<'_, P::Scalar>,
-) -> Result<Option<Root<P::Scalar>>, Limit> {
-    let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
-    work.newton_starts += 1;
-    let [mut u, mut v] = start.map(|t| t.clamped(zero, one));
-    let (mut from_u, mut from_v) = (u, v);
-    let (mut step_u, mut step_v) = (zero, zero);
-    let mut last = P::Scalar::INFINITY;
-    let mut halvings = 0;
-    let mut held_before = false;
-    // Ends: a fixed number of evaluations.
-    for _ in 0..limits.newton_iterations {
-        spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
-        let jet = surface.net.jet(u, v, basis).map_err(|Full| Limit::Scratch)?;
-        let point = planes.weighted(jet.point);
-        let (along_u, along_v) = (planes.derivative(jet.du), planes.derivative(jet.dv));
-        let weight = jet.point.weight();
-        let residual = point.norm();
-        let determinant = along_u.cross(&along_v);
-        let size = along_u.norm() * along_v.norm();
-        // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
-        if residual <= noise::<P::Scalar>() * weight {
-            let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
-            return Ok(Some(Root { u, v, depth: point.depth / weight, grazing }));
-        }
-        // Damping. A NaN counts as growth.
-        if !(residual < last) {
-            if halvings >= limits.newton_halvings {
-                return Ok(None);
-            }
-            halvings += 1;
-            (step_u, step_v) = (step_u * P::Scalar::HALF, step_v * P::Scalar::HALF);
-            (u, v) = (from_u + step_u, from_v + step_v);
-            continue;
-        }
-        if determinant.abs() <= P::Scalar::EPSILON * size {
-            return Ok(None);
-        }
-        let inverse = one / determinant;
-        let du = along_v.cross(&point) * inverse;
-        let dv = point.cross(&along_u) * inverse;
-        let (next_u, next_v) = (u + du, v + dv);
-        let [bend_uu, bend_uv, bend_vv] = surface.bend;
-        let left = bend_uu * (du * du) + bend_uv * (du * dv).abs() + bend_vv * (dv * dv);
-        if left <= limits.tolerance {
-            // Converged; what is left to see is whether the root lies on the surface or beyond its edge.
-            if !(on_surface(next_u) && on_surface(next_v)) {
-                return Ok(None);
-            }
-            let weight = if P::RATIONAL { weight + jet.du.weight() * du + jet.dv.weight() * dv } else { weight };
-            let depth = (point.depth + along_u.depth * du + along_v.depth * dv) / weight;
-            let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
-            return Ok(Some(Root { u: next_u.clamped(zero, one), v: next_v.clamped(zero, one), depth, grazing }));
-        }
-        // An iterate outside is held at the edge, where a root may lie; a second one in a row is leaving for good.
-        let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
-        let held = held_u != next_u || held_v != next_v;
-        if held && held_before {
-            return Ok(None);
-        }
-        held_before = held;
-        (from_u, from_v, last, halvings) = (u, v, residual, 0);
-        (step_u, step_v) = (held_u - u, held_v - v);
-        (u, v) = (held_u, held_v);
+/// One ray and one surface.
+#[derive(Debug)]
+pub struct Solver<'a, 's, 'm, P: Point> {
+    /// The surface.
+    pub surface: &'a Surface<'m, P>,
+    /// The ray.
+    pub planes: &'a Planes<P::Scalar>,
+    /// Bounds on the work.
+    pub limits: &'a Limits<P::Scalar>,
+    /// Room for the projected net.
+    flat: &'a mut VecView<P::Flat>,
+    basis: &'a mut BasisView<'s, P::Scalar>,
+    /// Whether `flat` holds the net: it is projected for the first start, since most rays that reach a surface's box give
+    /// none.
+    projected: bool,
+}
+
+impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
+    /// A solver with lent room for the projected net and for evaluating it.
+    #[inline(always)]
+    pub fn new(
+        surface: &'a Surface<'m, P>,
+        planes: &'a Planes<P::Scalar>,
+        limits: &'a Limits<P::Scalar>,
+        flat: &'a mut VecView<P::Flat>,
+        basis: &'a mut BasisView<'s, P::Scalar>,
+    ) -> Self {
+        Solver { surface, planes, limits, flat, basis, projected: false }
     }
-    Ok(None)
+
+    /// Solves from `start`; `None` if the iteration leads to no root, which does not prove that there is none.
+    ///
+    /// The iteration may leave the patch that gave the start: it works on the whole surface.
+    pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+        let Some(([u, v], grazing)) = self.iterate(start, work)? else {
+            return Ok(None);
+        };
+        let depth = self.planes.depth_on(&self.surface.net, [u, v], self.basis).map_err(|Full| Limit::Scratch)?;
+        Ok(Some(Root { u, v, depth, grazing }))
+    }
+
+    /// The parameters that the iteration comes to, and whether the ray is tangent there.
+    #[inline(always)]
+    fn iterate(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<([P::Scalar; 2], bool)>, Limit> {
+        let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
+        let (surface, limits) = (self.surface, self.limits);
+        if !self.projected {
+            project_net(&surface.net, self.planes, self.flat).map_err(|Full| Limit::Scratch)?;
+            self.projected = true;
+        }
+        let flat = self.flat.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
+        work.newton_starts += 1;
+        let [mut u, mut v] = start.map(|t| t.clamped(zero, one));
+        let (mut from_u, mut from_v) = (u, v);
+        let (mut step_u, mut step_v) = (zero, zero);
+        let mut last = P::Scalar::INFINITY;
+        let mut halvings = 0;
+        let mut held_before = false;
+        // Ends: a fixed number of evaluations.
+        for _ in 0..limits.newton_iterations {
+            spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
+            let jet = bernstein::jet(surface.net.degrees(), flat, [u, v], self.basis).map_err(|Full| Limit::Scratch)?;
+            let ([f, g], [fu, gu], [fv, gv]) = (jet.point.f_g(), jet.du.f_g(), jet.dv.f_g());
+            let residual = f.abs() + g.abs();
+            let determinant = fu * gv - gu * fv;
+            let size = (fu.abs() + gu.abs()) * (fv.abs() + gv.abs());
+            // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
+            if residual <= noise::<P::Scalar>() * jet.point.weight() {
+                return Ok(Some(([u, v], determinant.abs() < tangent::<P::Scalar>() * size)));
+            }
+            // Damping. A NaN counts as growth.
+            if !(residual < last) {
+                if halvings >= limits.newton_halvings {
+                    return Ok(None);
+                }
+                halvings += 1;
+                (step_u, step_v) = (step_u * P::Scalar::HALF, step_v * P::Scalar::HALF);
+                (u, v) = (from_u + step_u, from_v + step_v);
+                continue;
+            }
+            if determinant.abs() <= P::Scalar::EPSILON * size {
+                return Ok(None);
+            }
+            let inverse = one / determinant;
+            let du = (fv * g - gv * f) * inverse;
+            let dv = (gu * f - fu * g) * inverse;
+            let (next_u, next_v) = (u + du, v + dv);
+            let [bend_uu, bend_uv, bend_vv] = surface.bend;
+            let left = bend_uu * (du * du) + bend_uv * (du * dv).abs() + bend_vv * (dv * dv);
+            if left <= limits.tolerance {
+                // Converged; what is left to see is whether the root lies on the surface or beyond its edge.
+                if !(on_surface(next_u) && on_surface(next_v)) {
+                    return Ok(None);
+                }
+                let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
+                return Ok(Some(([next_u.clamped(zero, one), next_v.clamped(zero, one)], grazing)));
+            }
+            // An iterate outside is held at the edge, where a root may lie; a second one in a row is leaving for good.
+            let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
+            let held = held_u != next_u || held_v != next_v;
+            if held && held_before {
+                return Ok(None);
+            }
+            held_before = held;
+            (from_u, from_v, last, halvings) = (u, v, residual, 0);
+            (step_u, step_v) = (held_u - u, held_v - v);
+            (u, v) = (held_u, held_v);
+        }
+        Ok(None)
+    }
 }
 
 /// Residuals up to this, in the frame, are rounding of the evaluation: a few sums of numbers below 1.

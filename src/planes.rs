@@ -5,9 +5,11 @@
 //! contain the axis along which the ray is steepest, so that projecting costs two products instead of six. The distance
 //! √(f² + g²) so measured is at least the point's true distance from the ray, and at most √3 times it.
 
+use crate::bernstein::{BasisView, Full, Linear, Tuple};
 use crate::ray::{Axis, Interval};
 use crate::scalar::Scalar;
-use crate::surface::Point;
+use crate::surface::{Flat, Net, Point};
+use heapless::vec::VecView;
 
 /// A stretch of a ray by depth: distance from the moved origin along the ray's steepest axis, in the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,10 +170,24 @@ impl<S: Scalar> Planes<S> {
         self.shear(steep.of(&p) - o * w, first.of(&p) - o1 * w, second.of(&p) - o2 * w)
     }
 
-    /// A derivative of such a sum, whose weight part is that of the derivative (0 for a plain one).
+    /// The depth of the point at (u, v) of a net.
     #[inline(always)]
-    pub fn derivative<P: Point<Scalar = S>>(&self, derivative: P) -> Projected<S> {
-        if P::RATIONAL { self.weighted(derivative) } else { self.vector(&derivative.weighted_position()) }
+    pub(crate) fn depth_on<P: Point<Scalar = S>>(
+        &self,
+        net: &Net<'_, P>,
+        at: [S; 2],
+        basis: &mut BasisView<'_, S>,
+    ) -> Result<S, Full> {
+        let [steep, ..] = self.axes;
+        let along = |p: P| steep.of(&p.weighted_position());
+        let place = if P::RATIONAL {
+            let Tuple([place, weight]) = net.sum(at, basis, |p| Tuple([along(p), p.weight()]))?;
+            place / weight
+        } else {
+            let Tuple([place]) = net.sum(at, basis, |p| Tuple([along(p)]))?;
+            place
+        };
+        Ok((place - self.ordered[0]) * self.forward)
     }
 
     #[inline(always)]
@@ -194,19 +210,24 @@ impl<S: Scalar> Planes<S> {
     }
 }
 
-/// The net of a surface projected on a ray's planes: what Bézier clipping works on. `out` receives, per control point, f
-/// and g times the weight, and the weight.
-pub fn project_net<P: Point>(
-    points: &[P],
+/// The net of a surface projected on a ray's planes, into the front of `out`, which grows to hold it: what Newton's method
+/// and Bézier clipping solve on.
+#[inline]
+pub fn project_net<'o, P: Point>(
+    net: &Net<'_, P>,
     planes: &Planes<P::Scalar>,
-    out: &mut heapless::vec::VecView<[P::Scalar; 3]>,
-) -> Result<(), crate::surface::Full> {
-    out.clear();
-    for &point in points {
-        let projected = planes.weighted(point);
-        out.push([projected.f, projected.g, point.weight()]).map_err(|_| crate::surface::Full)?;
+    out: &'o mut VecView<P::Flat>,
+) -> Result<&'o [P::Flat], Full> {
+    let points = net.points();
+    if out.len() < points.len() {
+        out.resize(points.len(), P::Flat::ZERO).map_err(|_| Full)?;
     }
-    Ok(())
+    let out = out.get_mut(..points.len()).ok_or(Full)?;
+    for (slot, &point) in out.iter_mut().zip(points) {
+        let Projected { f, g, .. } = planes.weighted(point);
+        *slot = P::Flat::new(f, g, point.weight());
+    }
+    Ok(out)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! ray-surface tests). The scene knows no method: a method is a function that searches one surface within a range of depths.
 
 use crate::arena::{Arena, Need};
+use crate::bernstein::{BasisView, Full};
 use crate::frame::{Aabb, Frame};
 use crate::grid::{Grid, GridSlot};
 use crate::limits::{GaveUp, Limit, Limits, Work, spend};
@@ -11,7 +12,7 @@ use crate::newton::Root;
 use crate::planes::{DepthRange, Planes};
 use crate::ray::{Hit, Interval, Ray, RayError};
 use crate::scalar::Scalar;
-use crate::surface::{BasisView, Full, Net, NetError, Point, Surface};
+use crate::surface::{Net, NetError, Point, Surface};
 
 /// A surface as a slot of lent memory.
 #[derive(Clone, Copy, Debug, PartialEq)]

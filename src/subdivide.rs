@@ -5,10 +5,11 @@
 //! of the distance between the piece and its parallelogram, are at most the flatness times the scene's diagonal.
 
 use crate::arena::{Arena, Need};
+use crate::bernstein::Full;
 use crate::frame::{Frame, PADDING};
 use crate::patch::{Domain, MAX_LEVEL, Measure, Parallelepiped, Patch};
 use crate::scalar::Scalar;
-use crate::surface::{Full, Net, Point};
+use crate::surface::{Net, Point};
 use crate::tree::Tree;
 use heapless::vec::{Vec, VecView};
 

@@ -5,12 +5,10 @@
 //! Source: G. Farin, "Curves and Surfaces for CAGD", chapters on Bernstein form, de Casteljau and rational surfaces.
 
 use crate::arena::Need;
+use crate::bernstein::{self, BasisView, Degrees, Full, Jet, Linear, MAX_DEGREE, Tuple, restrict_line};
 use crate::scalar::{Scalar, Vector3};
 use core::ops::{Add, Mul, Sub};
-use heapless::vec::{Vec, VecView};
-
-/// The highest degree in each direction.
-pub const MAX_DEGREE: usize = 15;
+use heapless::vec::VecView;
 
 mod sealed {
     pub trait Sealed {}
@@ -21,24 +19,16 @@ mod sealed {
 /// A control point: [`Plain`] for polynomial surfaces, [`Weighted`] for rational ones. A scene uses one kind throughout,
 /// so that a polynomial scene links no rational code.
 pub trait Point:
-    sealed::Sealed
-    + Copy
-    + Default
-    + core::fmt::Debug
-    + PartialEq
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Self::Scalar, Output = Self>
-    + Send
-    + Sync
-    + 'static
+    sealed::Sealed + Copy + Default + core::fmt::Debug + PartialEq + Linear<Self::Scalar> + Send + Sync + 'static
 {
     /// The type of the coordinates.
     type Scalar: Scalar;
+    /// The point projected on a ray's two planes: f and g, times the weight, which comes third if there is one.
+    type Flat: Flat<Scalar = Self::Scalar>;
     /// Whether there are weights.
     const RATIONAL: bool;
-    /// All zero: what a sum begins with, and a slot that holds nothing.
-    const EMPTY: Self;
+    /// All zero: a slot that holds nothing.
+    const EMPTY: Self = Self::ZERO;
     /// Position times weight.
     fn weighted_position(self) -> [Self::Scalar; 3];
     /// The weight; 1 for a plain point.
@@ -67,6 +57,50 @@ impl<S: Scalar> Weighted<S> {
     }
 }
 
+/// A control point projected on a ray's two planes.
+pub trait Flat: Linear<Self::Scalar> + core::fmt::Debug + PartialEq + Send + Sync + 'static {
+    /// The type of the coordinates.
+    type Scalar: Scalar;
+    /// From f and g, both times the weight, and the weight.
+    fn new(f: Self::Scalar, g: Self::Scalar, weight: Self::Scalar) -> Self;
+    /// f and g, times the weight.
+    fn f_g(self) -> [Self::Scalar; 2];
+    /// The weight; of a point without one 1.
+    fn weight(self) -> Self::Scalar;
+}
+
+impl<S: Scalar> Flat for Tuple<S, 2> {
+    type Scalar = S;
+    #[inline(always)]
+    fn new(f: S, g: S, _weight: S) -> Self {
+        Tuple([f, g])
+    }
+    #[inline(always)]
+    fn f_g(self) -> [S; 2] {
+        self.0
+    }
+    #[inline(always)]
+    fn weight(self) -> S {
+        S::ONE
+    }
+}
+
+impl<S: Scalar> Flat for Tuple<S, 3> {
+    type Scalar = S;
+    #[inline(always)]
+    fn new(f: S, g: S, weight: S) -> Self {
+        Tuple([f, g, weight])
+    }
+    #[inline(always)]
+    fn f_g(self) -> [S; 2] {
+        [self.0[0], self.0[1]]
+    }
+    #[inline(always)]
+    fn weight(self) -> S {
+        self.0[2]
+    }
+}
+
 macro_rules! componentwise {
     ($point:ident, $($k:literal)*) => {
         impl<S: Scalar> Add for $point<S> {
@@ -90,6 +124,9 @@ macro_rules! componentwise {
                 $point([$(self.0[$k] * factor),*])
             }
         }
+        impl<S: Scalar> Linear<S> for $point<S> {
+            const ZERO: Self = $point([S::ZERO; [$($k),*].len()]);
+        }
     };
 }
 componentwise!(Plain, 0 1 2);
@@ -98,7 +135,7 @@ componentwise!(Weighted, 0 1 2 3);
 impl<S: Scalar> Point for Plain<S> {
     type Scalar = S;
     const RATIONAL: bool = false;
-    const EMPTY: Self = Plain([S::ZERO; 3]);
+    type Flat = Tuple<S, 2>;
     #[inline(always)]
     fn weighted_position(self) -> [S; 3] {
         self.0
@@ -119,7 +156,7 @@ impl<S: Scalar> Point for Plain<S> {
 impl<S: Scalar> Point for Weighted<S> {
     type Scalar = S;
     const RATIONAL: bool = true;
-    const EMPTY: Self = Weighted([S::ZERO; 4]);
+    type Flat = Tuple<S, 3>;
     #[inline(always)]
     fn weighted_position(self) -> [S; 3] {
         [self.0[0], self.0[1], self.0[2]]
@@ -173,58 +210,6 @@ impl core::fmt::Display for NetError {
 }
 
 impl core::error::Error for NetError {}
-
-/// Point and first partial derivatives of a surface, homogeneous if the surface is rational.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Jet<P> {
-    /// S(u, v).
-    pub point: P,
-    /// ∂S/∂u.
-    pub du: P,
-    /// ∂S/∂v.
-    pub dv: P,
-}
-
-/// Room for the Bernstein polynomials of one evaluation, in u and in v: each needs degree + 1 slots.
-#[derive(Debug)]
-pub struct BasisView<'s, S> {
-    /// Of the degree in u.
-    pub u: &'s mut VecView<Terms<S>>,
-    /// Of the degree in v.
-    pub v: &'s mut VecView<Terms<S>>,
-}
-
-/// B_i^n(t) with its first and second derivative.
-pub type Terms<S> = [S; 3];
-
-/// Room for one basis in each direction; `ORDER` is the highest degree + 1.
-#[derive(Debug)]
-pub struct Basis<S, const ORDER: usize> {
-    u: Vec<Terms<S>, ORDER>,
-    v: Vec<Terms<S>, ORDER>,
-}
-
-impl<S, const ORDER: usize> Basis<S, ORDER> {
-    /// Empty, usable in a static.
-    pub const fn new() -> Self {
-        Basis { u: Vec::new(), v: Vec::new() }
-    }
-
-    /// The view that evaluation takes.
-    pub fn view(&mut self) -> BasisView<'_, S> {
-        BasisView { u: &mut self.u, v: &mut self.v }
-    }
-}
-
-impl<S, const ORDER: usize> Default for Basis<S, ORDER> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-/// A basis is too small for the degree of a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Full;
 
 /// A control net: a view of lent points. See the module's head for the order of the points.
 #[derive(Clone, Copy, Debug)]
@@ -301,41 +286,26 @@ impl<'m, P: Point> Net<'m, P> {
         [0, last, row, last + row].map(|k| self.points.get(k).copied().unwrap_or(P::EMPTY))
     }
 
-    /// Point and first derivatives at (u, v); slightly outside [0, 1] the polynomials go on.
-    ///
-    /// `basis` serves all degrees but 2 × 2 and 3 × 3, which are unrolled and leave it alone.
-    #[inline]
-    pub fn jet(&self, u: P::Scalar, v: P::Scalar, basis: &mut BasisView<'_, P::Scalar>) -> Result<Jet<P>, Full> {
-        // These two shapes are nearly all that models hold; unrolled, they run about twice as fast as the loops.
-        if self.degree_u == 3 && self.degree_v == 3 {
-            if let Ok(points) = <&[P; 16]>::try_from(self.points) {
-                return Ok(jet_unrolled::<P, 4, 4, 16>(points, &cubic(u), &cubic(v)));
-            }
-        }
-        if self.degree_u == 2 && self.degree_v == 2 {
-            if let Ok(points) = <&[P; 9]>::try_from(self.points) {
-                return Ok(jet_unrolled::<P, 3, 3, 9>(points, &quadratic(u), &quadratic(v)));
-            }
-        }
-        self.jet_any_degree(u, v, basis)
+    pub(crate) fn degrees(&self) -> Degrees {
+        Degrees { u: self.degree_u, v: self.degree_v }
     }
 
-    #[inline(never)]
-    fn jet_any_degree(&self, u: P::Scalar, v: P::Scalar, basis: &mut BasisView<'_, P::Scalar>) -> Result<Jet<P>, Full> {
-        bernstein(self.degree_u, u, basis.u)?;
-        bernstein(self.degree_v, v, basis.v)?;
-        let mut jet = Jet { point: P::EMPTY, du: P::EMPTY, dv: P::EMPTY };
-        for (row, &[b, b1, _]) in self.rows().zip(basis.u.iter()) {
-            let (mut point, mut dv) = (P::EMPTY, P::EMPTY);
-            for (&p, &[c, c1, _]) in row.iter().zip(basis.v.iter()) {
-                point = point + p * c;
-                dv = dv + p * c1;
-            }
-            jet.point = jet.point + point * b;
-            jet.du = jet.du + point * b1;
-            jet.dv = jet.dv + dv * b;
-        }
-        Ok(jet)
+    /// Point and first derivatives at (u, v), homogeneous if there are weights; slightly outside [0, 1] the polynomials go
+    /// on.
+    #[inline]
+    pub fn jet(&self, u: P::Scalar, v: P::Scalar, basis: &mut BasisView<'_, P::Scalar>) -> Result<Jet<P>, Full> {
+        bernstein::jet(self.degrees(), self.points, [u, v], basis)
+    }
+
+    /// The sum over the numbers that `part` takes from each control point, at (u, v).
+    #[inline(always)]
+    pub(crate) fn sum<T: Linear<P::Scalar>>(
+        &self,
+        at: [P::Scalar; 2],
+        basis: &mut BasisView<'_, P::Scalar>,
+        part: impl Fn(P) -> T,
+    ) -> Result<T, Full> {
+        bernstein::value(self.degrees(), self.points, at, basis, part)
     }
 
     /// The position at (u, v), weight divided out.
@@ -388,12 +358,11 @@ impl<'m, P: Point> Net<'m, P> {
         v: P::Scalar,
         basis: &mut BasisView<'_, P::Scalar>,
     ) -> Result<([V<P>; 2], [V<P>; 3]), Full> {
-        bernstein(self.degree_u, u, basis.u)?;
-        bernstein(self.degree_v, v, basis.v)?;
+        basis.fill(self.degrees(), [u, v])?;
         // sums[i][j]: i derivatives in u, j in v.
-        let mut sums = [[P::EMPTY; 3]; 3];
+        let mut sums = [[P::ZERO; 3]; 3];
         for (row, b) in self.rows().zip(basis.u.iter()) {
-            let mut along = [P::EMPTY; 3];
+            let mut along = [P::ZERO; 3];
             for (&p, c) in row.iter().zip(basis.v.iter()) {
                 for k in 0..3 {
                     along[k] = along[k] + p * c[k];
@@ -507,126 +476,3 @@ impl<P: Point> Net<'_, P> {
 pub(crate) const SHEAR: f64 = 1.7321;
 
 type V<P> = <<P as Point>::Scalar as Scalar>::Vec3;
-
-/// De Casteljau twice on `count` points, `stride` apart from `first` on: keep what is below `to`, then what is above
-/// `from`.
-fn restrict_line<P: Point>(points: &mut [P], first: usize, stride: usize, count: usize, [from, to]: [P::Scalar; 2]) {
-    let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
-    let at = |k: usize| first + k * stride;
-    let mut blend = |low: usize, high: usize, into: usize, t: P::Scalar| {
-        if let (Some(&p), Some(&q)) = (points.get(at(low)), points.get(at(high))) {
-            if let Some(slot) = points.get_mut(at(into)) {
-                *slot = p * (one - t) + q * t;
-            }
-        }
-    };
-    if to != one {
-        for level in 1..count {
-            for k in (level..count).rev() {
-                blend(k - 1, k, k, to);
-            }
-        }
-    }
-    if from != zero && to > zero {
-        let t = from / to;
-        for level in 1..count {
-            for k in 0..count - level {
-                blend(k, k + 1, k, t);
-            }
-        }
-    }
-}
-
-/// Bernstein polynomials of `degree` at `t` with two derivatives, into `out`; from those of degree − 2, raised twice.
-fn bernstein<S: Scalar>(degree: usize, t: S, out: &mut VecView<Terms<S>>) -> Result<(), Full> {
-    out.clear();
-    out.resize(degree + 1, [S::ZERO; 3]).map_err(|_| Full)?;
-    let s = S::ONE - t;
-    // Degree n − 2 (or 0) first: binomial · t^i going up, · s^(n−2−i) going down.
-    let low = degree.saturating_sub(2);
-    let mut power = S::ONE;
-    if let Some(row) = BINOMIALS.get(low) {
-        for (terms, &binomial) in out.iter_mut().zip(row).take(low + 1) {
-            terms[0] = power * S::from_u32(u32::from(binomial));
-            power = power * t;
-        }
-    }
-    power = S::ONE;
-    for terms in out.iter_mut().take(low + 1).rev() {
-        terms[0] = terms[0] * power;
-        power = power * s;
-    }
-    // Each raise: B_i^k = s B_i^(k−1) + t B_(i−1)^(k−1), B_i^k' = k (B_(i−1)^(k−1) − B_i^(k−1)), likewise once more.
-    for k in low + 1..=degree {
-        let order = S::from_u32(k as u32);
-        let [mut left, mut left1] = [S::ZERO; 2];
-        for terms in out.iter_mut() {
-            let [here, here1, _] = *terms;
-            *terms = [s * here + t * left, order * (left - here), order * (left1 - here1)];
-            (left, left1) = (here, here1);
-        }
-    }
-    Ok(())
-}
-
-/// Pascal's triangle up to the degree from which [`bernstein`] raises.
-const BINOMIALS: [[u16; MAX_DEGREE]; MAX_DEGREE - 1] = {
-    let mut rows = [[0; MAX_DEGREE]; MAX_DEGREE - 1];
-    let mut n = 0;
-    while n < MAX_DEGREE - 1 {
-        rows[n][0] = 1;
-        let mut k = 1;
-        while k <= n {
-            rows[n][k] = rows[n - 1][k - 1] + rows[n - 1][k];
-            k += 1;
-        }
-        n += 1;
-    }
-    rows
-};
-
-/// Values and derivatives of the cubic Bernstein polynomials.
-#[inline(always)]
-fn cubic<S: Scalar>(t: S) -> [[S; 2]; 4] {
-    let three = S::from_u32(3);
-    let s = S::ONE - t;
-    let (ss, tt, st) = (s * s, t * t, s * t);
-    let (st3, ss3, tt3) = (three * st, three * ss, three * tt);
-    let st6 = st3 + st3;
-    [[ss * s, -ss3], [st3 * s, ss3 - st6], [st3 * t, st6 - tt3], [tt * t, tt3]]
-}
-
-/// Values and derivatives of the quadratic Bernstein polynomials.
-#[inline(always)]
-fn quadratic<S: Scalar>(t: S) -> [[S; 2]; 3] {
-    let s = S::ONE - t;
-    let (s2, t2) = (s + s, t + t);
-    [[s * s, -s2], [s2 * t, s2 - t2], [t * t, t2]]
-}
-
-/// [`Net::jet`] for an order known when compiling; `N` is `R · C`.
-#[inline(always)]
-fn jet_unrolled<P: Point, const R: usize, const C: usize, const N: usize>(
-    points: &[P; N],
-    bu: &[[P::Scalar; 2]; R],
-    bv: &[[P::Scalar; 2]; C],
-) -> Jet<P> {
-    const { assert!(R * C == N && R > 0 && C > 0) }
-    // Along u first: the points of a row stand side by side in memory, and all its coordinates take the same factor.
-    let mut value = [P::EMPTY; C];
-    let mut slope = [P::EMPTY; C];
-    for i in 0..R {
-        for j in 0..C {
-            let point = points[i * C + j];
-            value[j] = value[j] + point * bu[i][0];
-            slope[j] = slope[j] + point * bu[i][1];
-        }
-    }
-    let mut jet = Jet { point: P::EMPTY, du: P::EMPTY, dv: P::EMPTY };
-    for j in 0..C {
-        jet.point = jet.point + value[j] * bv[j][0];
-        jet.du = jet.du + slope[j] * bv[j][0];
-        jet.dv = jet.dv + value[j] * bv[j][1];
-    }
-    jet
-}

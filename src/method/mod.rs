@@ -6,41 +6,45 @@ pub mod newton;
 pub mod newton_coherent;
 mod starts;
 
+use crate::bernstein::{Basis, BasisView};
 use crate::newton::Root;
 use crate::planes::Planes;
 use crate::scalar::Scalar;
-use crate::surface::{Basis, BasisView};
+use crate::surface::Point;
+use heapless::vec::{Vec, VecView};
 
-/// What one thread needs per ray, whichever of Newton's methods it traces with. `ORDER` is the highest degree + 1; a scene
-/// with only 2 × 2 and 3 × 3 surfaces does with 4.
+/// What one thread needs per ray, whichever of Newton's methods it traces with. `ORDER` is the highest degree + 1, `POINTS`
+/// the most control points of a surface, (n + 1)(m + 1).
 #[derive(Debug)]
-pub struct Scratch<S, const ORDER: usize> {
-    basis: Basis<S, ORDER>,
+pub struct Scratch<P: Point, const ORDER: usize, const POINTS: usize> {
+    flat: Vec<P::Flat, POINTS>,
+    basis: Basis<P::Scalar, ORDER>,
 }
 
-impl<S: Scalar, const ORDER: usize> Scratch<S, ORDER> {
+impl<P: Point, const ORDER: usize, const POINTS: usize> Scratch<P, ORDER, POINTS> {
     /// Empty scratch, usable in a static.
     pub const fn new() -> Self {
-        Scratch { basis: Basis::new() }
+        Scratch { flat: Vec::new(), basis: Basis::new() }
     }
 
     /// The view that the methods take.
-    pub fn view(&mut self) -> ScratchView<'_, S> {
-        ScratchView { basis: self.basis.view() }
+    pub fn view(&mut self) -> ScratchView<'_, P> {
+        ScratchView { flat: &mut self.flat, basis: self.basis.view() }
     }
 }
 
-impl<S: Scalar, const ORDER: usize> Default for Scratch<S, ORDER> {
+impl<P: Point, const ORDER: usize, const POINTS: usize> Default for Scratch<P, ORDER, POINTS> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-/// A view of [`Scratch`] without its capacity.
+/// A view of [`Scratch`] without its capacities.
 #[derive(Debug)]
-pub struct ScratchView<'s, S> {
+pub struct ScratchView<'s, P: Point> {
+    flat: &'s mut VecView<P::Flat>,
     /// Room for evaluating a surface.
-    pub basis: BasisView<'s, S>,
+    pub basis: BasisView<'s, P::Scalar>,
 }
 
 /// Counts a root as an intersection point if it lies in the ray's interval, and keeps it if it is closer.

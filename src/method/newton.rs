@@ -9,7 +9,7 @@
 use super::starts::{First, from_patch};
 use super::{ScratchView, keep_closest};
 use crate::limits::{GaveUp, Limit, Limits, Work};
-use crate::newton::Root;
+use crate::newton::{Root, Solver};
 use crate::planes::{DepthRange, Planes};
 use crate::ray::{Hit, Interval, Ray};
 use crate::scene::Scene;
@@ -28,7 +28,7 @@ pub fn closest<P: Point>(
     ray: &Ray<P::Scalar>,
     interval: &Interval<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P::Scalar>,
+    scratch: &mut ScratchView<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
@@ -44,19 +44,19 @@ fn search<P: Point>(
     planes: &Planes<P::Scalar>,
     range: DepthRange<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P::Scalar>,
+    scratch: &mut ScratchView<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Root<P::Scalar>>, Limit> {
     let number = surface.number as usize;
     let mut descent = tree.of_surface(patches, number).ok_or(Limit::Slot)?;
+    let mut solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
     let mut best = None;
     // Ends with the tree.
     while let Some((patch, crossing)) = descent.next_patch(planes, limits, work)? {
         if !crossing.overlaps(&range) {
             continue;
         }
-        let found = from_patch(surface, patch, &crossing, First::AsCritical, planes, limits, work, &mut scratch.basis)?;
-        if let Some(root) = found {
+        if let Some(root) = from_patch(&mut solver, patch, &crossing, First::AsCritical, work)? {
             keep_closest(&mut best, root, planes, &mut work.intersection_points);
         }
     }

@@ -15,14 +15,14 @@ use super::starts::{First, from_patch};
 use super::{ScratchView, keep_closest};
 use crate::grid::{Grid, Grids};
 use crate::limits::{Acceptance, GaveUp, Limit, Limits, Work, spend};
-use crate::newton::{Root, solve};
+use crate::newton::{Root, Solver};
 use crate::patch::{Crossing, Patch};
-use crate::planes::{DepthRange, Planes};
+use crate::planes::DepthRange;
 use crate::ray::{Hit, Interval, Ray};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::subdivide::Patches;
-use crate::surface::{Point, Surface};
+use crate::surface::Point;
 use crate::verify::testing_ray;
 
 /// Coherence memory: what the previous ray of a scan line left on one surface. A slot of memory that the caller lends, one
@@ -55,7 +55,7 @@ pub fn closest<P: Point>(
     ray: &Ray<P::Scalar>,
     interval: &Interval<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P::Scalar>,
+    scratch: &mut ScratchView<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let stamp = scan_line.wrapping_add(1);
@@ -64,7 +64,8 @@ pub fn closest<P: Point>(
         let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
         let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
         let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
-        let mut search = Search { surface, patches, grid, planes, range, limits, scratch };
+        let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
+        let mut search = Search { solver, patches, grid, range };
         let previous = if slot.stamp == stamp && stamp != 0 { Some([slot.u, slot.v]) } else { None };
         let found = match search.resume(previous, work)? {
             Some(root) => Some(root),
@@ -81,25 +82,21 @@ pub fn closest<P: Point>(
 
 /// One ray and one surface.
 struct Search<'a, 's, 'm, P: Point> {
-    surface: &'a Surface<'m, P>,
+    solver: Solver<'a, 's, 'm, P>,
     patches: &'m [Patch<P::Scalar>],
     grid: Grid<'m, P::Scalar>,
-    planes: &'a Planes<P::Scalar>,
     range: DepthRange<P::Scalar>,
-    limits: &'a Limits<P::Scalar>,
-    scratch: &'a mut ScratchView<'s, P::Scalar>,
 }
 
-impl<'m, P: Point> Search<'_, '_, 'm, P> {
+impl<P: Point> Search<'_, '_, '_, P> {
     /// The point found from the previous one's (u, v), verified or replaced by a closer one; `None` if the surface has to
     /// be searched in full.
     fn resume(&mut self, previous: Option<[P::Scalar; 2]>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         let Some(start) = previous else {
             return Ok(None);
         };
-        let point = solve(self.surface, self.planes, start, self.limits, work, &mut self.scratch.basis)?;
         // A point before the interval says nothing about what lies in it.
-        let point = point.filter(|root| root.depth >= self.range.min);
+        let point = self.solver.solve(start, work)?.filter(|root| root.depth >= self.range.min);
         let verified = match point {
             Some(point) => self.verify(point, work)?,
             None => None,
@@ -110,7 +107,8 @@ impl<'m, P: Point> Search<'_, '_, 'm, P> {
 
     /// The testing ray: the point itself if it is the closest, a closer one that it leads to, or `None` if it cannot tell.
     fn verify(&mut self, point: Root<P::Scalar>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
-        let Search { surface, patches, ref grid, planes, range, limits, ref mut scratch } = *self;
+        let Search { solver, patches, grid, range } = self;
+        let (planes, limits) = (solver.planes, solver.limits);
         let mut closest = Some(point);
         let (mut owners, mut alone) = (0_u32, true);
         work.intersection_points += u32::from(planes.t_in_interval(point.depth).is_some());
@@ -122,10 +120,7 @@ impl<'m, P: Point> Search<'_, '_, 'm, P> {
                 }
             }
             alone = false;
-            let basis = &mut scratch.basis;
-            let first = First::Entrance;
-            let found = from_patch(surface, listed.patch, &listed.crossing, first, planes, limits, work, basis)?;
-            if let Some(root) = found {
+            if let Some(root) = from_patch(solver, listed.patch, &listed.crossing, First::Entrance, work)? {
                 keep_closest(&mut closest, root, planes, &mut work.intersection_points);
             }
             Ok(())
@@ -143,28 +138,27 @@ impl<'m, P: Point> Search<'_, '_, 'm, P> {
 
     /// The closest root by a search of the grid, front to back, that ends where no later voxel can hold a closer one.
     fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+        let (planes, limits) = (self.solver.planes, self.solver.limits);
         work.full_searches += 1;
-        let Some((mut walk, begin)) = self.grid.enter(self.planes, &self.range) else {
+        let Some((mut walk, begin)) = self.grid.enter(planes, &self.range) else {
             return Ok(None);
         };
         let mut best: Option<Root<P::Scalar>> = None;
         // Ends with the walk.
         while let Some(voxel) = walk.advance() {
             let voxel = voxel.map_err(|()| Limit::Slot)?;
-            spend(&mut work.voxels_visited, self.limits.voxels, Limit::Voxels)?;
+            spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
             for item in voxel.fresh() {
                 let patch = self.patches.get(item).ok_or(Limit::Slot)?;
-                spend(&mut work.patches_tested, self.limits.patches, Limit::Patches)?;
-                let Some(crossing) = patch.bounds().crossing(self.planes) else {
+                spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
+                let Some(crossing) = patch.bounds().crossing(planes) else {
                     continue;
                 };
                 if !crossing.overlaps(&self.range) {
                     continue;
                 }
-                let (first, basis) = (First::AsCritical, &mut self.scratch.basis);
-                let found = from_patch(self.surface, patch, &crossing, first, self.planes, self.limits, work, basis)?;
-                if let Some(root) = found {
-                    keep_closest(&mut best, root, self.planes, &mut work.intersection_points);
+                if let Some(root) = from_patch(&mut self.solver, patch, &crossing, First::AsCritical, work)? {
+                    keep_closest(&mut best, root, planes, &mut work.intersection_points);
                 }
             }
             // A root counts only once the walk has come to it: a patch not met yet may hold a closer one.

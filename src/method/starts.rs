@@ -4,11 +4,10 @@
 //! does not converge, from the entrance into the parallelepiped; then once more, from where is not said. In the critical
 //! case of eq. (1) the entrance comes first.
 
-use crate::limits::{Limit, Limits, Work};
-use crate::newton::{Root, solve};
+use crate::limits::{Limit, Work};
+use crate::newton::{Root, Solver};
 use crate::patch::{Crossing, Patch};
-use crate::planes::Planes;
-use crate::surface::{BasisView, Point, Surface};
+use crate::surface::Point;
 
 /// Where to begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,23 +21,20 @@ pub(super) enum First {
 /// Tries the starts of a patch in turn until one converges; `None`, counted as unresolved, if none does.
 #[inline]
 pub(super) fn from_patch<P: Point>(
-    surface: &Surface<'_, P>,
+    solver: &mut Solver<'_, '_, '_, P>,
     patch: &Patch<P::Scalar>,
     crossing: &Crossing<P::Scalar>,
     first: First,
-    planes: &Planes<P::Scalar>,
-    limits: &Limits<P::Scalar>,
     work: &mut Work,
-    basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Option<Root<P::Scalar>>, Limit> {
-    let critical = patch.is_critical(crossing, limits.critical_factor);
+    let critical = patch.is_critical(crossing, solver.limits.critical_factor);
     work.critical += u32::from(critical);
     let entrance_first = critical || first == First::Entrance;
-    let mut starts_left = limits.newton_starts;
+    let mut starts_left = solver.limits.newton_starts;
     if !entrance_first && starts_left > 0 {
         if let Some(start) = patch.parallelogram(crossing) {
             starts_left -= 1;
-            if let Some(root) = solve(surface, planes, start, limits, work, basis)? {
+            if let Some(root) = solver.solve(start, work)? {
                 return Ok(Some(root));
             }
         }
@@ -52,7 +48,7 @@ pub(super) fn from_patch<P: Point>(
             break;
         }
         starts_left -= 1;
-        if let Some(root) = solve(surface, planes, start, limits, work, basis)? {
+        if let Some(root) = solver.solve(start, work)? {
             return Ok(Some(root));
         }
     }

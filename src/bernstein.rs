@@ -1,0 +1,306 @@
+//! Bernstein polynomials: bases, sums over a control net with their derivatives, and de Casteljau's algorithm.
+//!
+//! Written for anything that can be added and scaled ([`Linear`]): control points in space, with or without weights, and
+//! nets projected on a ray's planes. Source: G. Farin, "Curves and Surfaces for CAGD", chapters on the Bernstein form.
+
+use crate::scalar::Scalar;
+use core::ops::{Add, Mul, Sub};
+use heapless::vec::{Vec, VecView};
+
+/// The highest degree in each direction.
+pub const MAX_DEGREE: usize = 15;
+
+/// What can be a coefficient of a Bernstein polynomial over `S`.
+pub trait Linear<S>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<S, Output = Self> {
+    /// What a sum begins with.
+    const ZERO: Self;
+}
+
+/// `N` numbers, added and scaled component by component.
+#[repr(transparent)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuple<S, const N: usize>(pub [S; N]);
+
+impl<S: Scalar, const N: usize> Add for Tuple<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Tuple(core::array::from_fn(|k| self.0[k] + other.0[k]))
+    }
+}
+
+impl<S: Scalar, const N: usize> Sub for Tuple<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Tuple(core::array::from_fn(|k| self.0[k] - other.0[k]))
+    }
+}
+
+impl<S: Scalar, const N: usize> Mul<S> for Tuple<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: S) -> Self {
+        Tuple(self.0.map(|c| c * factor))
+    }
+}
+
+impl<S: Scalar, const N: usize> Linear<S> for Tuple<S, N> {
+    const ZERO: Self = Tuple([S::ZERO; N]);
+}
+
+/// The value of a sum over a net, and its first partial derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet<T> {
+    /// S(u, v).
+    pub point: T,
+    /// ∂S/∂u.
+    pub du: T,
+    /// ∂S/∂v.
+    pub dv: T,
+}
+
+/// Room for the Bernstein polynomials of one evaluation, in u and in v: each needs degree + 1 slots.
+#[derive(Debug)]
+pub struct BasisView<'s, S> {
+    /// Of the degree in u.
+    pub u: &'s mut VecView<Terms<S>>,
+    /// Of the degree in v.
+    pub v: &'s mut VecView<Terms<S>>,
+}
+
+/// B_i^n(t) with its first and second derivative.
+pub type Terms<S> = [S; 3];
+
+/// Room for one basis in each direction; `ORDER` is the highest degree + 1.
+#[derive(Debug)]
+pub struct Basis<S, const ORDER: usize> {
+    u: Vec<Terms<S>, ORDER>,
+    v: Vec<Terms<S>, ORDER>,
+}
+
+impl<S, const ORDER: usize> Basis<S, ORDER> {
+    /// Empty, usable in a static.
+    pub const fn new() -> Self {
+        Basis { u: Vec::new(), v: Vec::new() }
+    }
+
+    /// The view that evaluation takes.
+    pub fn view(&mut self) -> BasisView<'_, S> {
+        BasisView { u: &mut self.u, v: &mut self.v }
+    }
+}
+
+impl<S, const ORDER: usize> Default for Basis<S, ORDER> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A basis is too small for the degree of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Full;
+
+/// The degrees of a net in u and v, and with them the shape of the slice that holds it: u is the outer index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Degrees {
+    pub(crate) u: usize,
+    pub(crate) v: usize,
+}
+
+/// Value and first derivatives at (u, v) of the sum over `net`; slightly outside [0, 1] the polynomials go on.
+///
+/// `basis` serves all degrees but 2 × 2 and 3 × 3, which are unrolled and leave it alone.
+#[inline(always)]
+pub(crate) fn jet<S: Scalar, T: Linear<S>>(
+    degrees: Degrees,
+    net: &[T],
+    [u, v]: [S; 2],
+    basis: &mut BasisView<'_, S>,
+) -> Result<Jet<T>, Full> {
+    // These two shapes are nearly all that models hold; unrolled, they run about twice as fast as the loops.
+    if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[T; 16]>::try_from(net)) {
+        return Ok(jet_unrolled::<S, T, 4, 4, 16>(net, &cubic(u), &cubic(v)));
+    }
+    if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&[T; 9]>::try_from(net)) {
+        return Ok(jet_unrolled::<S, T, 3, 3, 9>(net, &quadratic(u), &quadratic(v)));
+    }
+    jet_any_degree(degrees, net, [u, v], basis)
+}
+
+#[inline(never)]
+fn jet_any_degree<S: Scalar, T: Linear<S>>(
+    degrees: Degrees,
+    net: &[T],
+    [u, v]: [S; 2],
+    basis: &mut BasisView<'_, S>,
+) -> Result<Jet<T>, Full> {
+    basis.fill(degrees, [u, v])?;
+    let mut jet = Jet { point: T::ZERO, du: T::ZERO, dv: T::ZERO };
+    for (row, &[b, b1, _]) in net.chunks_exact(degrees.v + 1).zip(basis.u.iter()) {
+        let (mut point, mut dv) = (T::ZERO, T::ZERO);
+        for (&p, &[c, c1, _]) in row.iter().zip(basis.v.iter()) {
+            point = point + p * c;
+            dv = dv + p * c1;
+        }
+        jet.point = jet.point + point * b;
+        jet.du = jet.du + point * b1;
+        jet.dv = jet.dv + dv * b;
+    }
+    Ok(jet)
+}
+
+/// The value alone of the sum over the numbers that `part` takes from each element of `net`; as [`jet`] otherwise.
+#[inline(always)]
+pub(crate) fn value<S: Scalar, P: Copy, T: Linear<S>>(
+    degrees: Degrees,
+    net: &[P],
+    [u, v]: [S; 2],
+    basis: &mut BasisView<'_, S>,
+    part: impl Fn(P) -> T,
+) -> Result<T, Full> {
+    if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[P; 16]>::try_from(net)) {
+        let (bu, bv) = (cubic(u), cubic(v));
+        let row = |i: usize| (0..4).fold(T::ZERO, |sum, j| sum + part(net[4 * i + j]) * bv[j][0]);
+        return Ok((0..4).fold(T::ZERO, |sum, i| sum + row(i) * bu[i][0]));
+    }
+    basis.fill(degrees, [u, v])?;
+    let mut sum = T::ZERO;
+    for (row, &[b, ..]) in net.chunks_exact(degrees.v + 1).zip(basis.u.iter()) {
+        let along = row.iter().zip(basis.v.iter()).fold(T::ZERO, |sum, (&p, &[c, ..])| sum + part(p) * c);
+        sum = sum + along * b;
+    }
+    Ok(sum)
+}
+
+impl<S: Scalar> BasisView<'_, S> {
+    /// Fills both bases.
+    pub(crate) fn fill(&mut self, degrees: Degrees, [u, v]: [S; 2]) -> Result<(), Full> {
+        bernstein(degrees.u, u, self.u)?;
+        bernstein(degrees.v, v, self.v)
+    }
+}
+
+/// De Casteljau twice on `count` points, `stride` apart from `first` on: keep what is below `to`, then what is above
+/// `from`.
+pub(crate) fn restrict_line<S: Scalar, T: Linear<S>>(
+    points: &mut [T],
+    first: usize,
+    stride: usize,
+    count: usize,
+    [from, to]: [S; 2],
+) {
+    let (zero, one) = (S::ZERO, S::ONE);
+    let at = |k: usize| first + k * stride;
+    let mut blend = |low: usize, high: usize, into: usize, t: S| {
+        if let (Some(&p), Some(&q)) = (points.get(at(low)), points.get(at(high))) {
+            if let Some(slot) = points.get_mut(at(into)) {
+                *slot = p * (one - t) + q * t;
+            }
+        }
+    };
+    if to != one {
+        for level in 1..count {
+            for k in (level..count).rev() {
+                blend(k - 1, k, k, to);
+            }
+        }
+    }
+    if from != zero && to > zero {
+        let t = from / to;
+        for level in 1..count {
+            for k in 0..count - level {
+                blend(k, k + 1, k, t);
+            }
+        }
+    }
+}
+
+/// Bernstein polynomials of `degree` at `t` with two derivatives, into `out`; from those of degree − 2, raised twice.
+fn bernstein<S: Scalar>(degree: usize, t: S, out: &mut VecView<Terms<S>>) -> Result<(), Full> {
+    out.clear();
+    out.resize(degree + 1, [S::ZERO; 3]).map_err(|_| Full)?;
+    let s = S::ONE - t;
+    // Degree n − 2 (or 0) first: binomial · t^i going up, · s^(n−2−i) going down.
+    let low = degree.saturating_sub(2);
+    let mut power = S::ONE;
+    if let Some(row) = BINOMIALS.get(low) {
+        for (terms, &binomial) in out.iter_mut().zip(row).take(low + 1) {
+            terms[0] = power * S::from_u32(u32::from(binomial));
+            power = power * t;
+        }
+    }
+    power = S::ONE;
+    for terms in out.iter_mut().take(low + 1).rev() {
+        terms[0] = terms[0] * power;
+        power = power * s;
+    }
+    // Each raise: B_i^k = s B_i^(k−1) + t B_(i−1)^(k−1), B_i^k' = k (B_(i−1)^(k−1) − B_i^(k−1)), likewise once more.
+    for k in low + 1..=degree {
+        let order = S::from_u32(k as u32);
+        let [mut left, mut left1] = [S::ZERO; 2];
+        for terms in out.iter_mut() {
+            let [here, here1, _] = *terms;
+            *terms = [s * here + t * left, order * (left - here), order * (left1 - here1)];
+            (left, left1) = (here, here1);
+        }
+    }
+    Ok(())
+}
+
+/// Pascal's triangle up to the degree from which [`bernstein`] raises.
+const BINOMIALS: [[u16; MAX_DEGREE]; MAX_DEGREE - 1] = {
+    let mut rows = [[0; MAX_DEGREE]; MAX_DEGREE - 1];
+    let mut n = 0;
+    while n < MAX_DEGREE - 1 {
+        rows[n][0] = 1;
+        let mut k = 1;
+        while k <= n {
+            rows[n][k] = rows[n - 1][k - 1] + rows[n - 1][k];
+            k += 1;
+        }
+        n += 1;
+    }
+    rows
+};
+
+/// Values and derivatives of the cubic Bernstein polynomials.
+#[inline(always)]
+fn cubic<S: Scalar>(t: S) -> [[S; 2]; 4] {
+    let three = S::from_u32(3);
+    let s = S::ONE - t;
+    let (ss, tt, st) = (s * s, t * t, s * t);
+    let (st3, ss3, tt3) = (three * st, three * ss, three * tt);
+    let st6 = st3 + st3;
+    [[ss * s, -ss3], [st3 * s, ss3 - st6], [st3 * t, st6 - tt3], [tt * t, tt3]]
+}
+
+/// Values and derivatives of the quadratic Bernstein polynomials.
+#[inline(always)]
+fn quadratic<S: Scalar>(t: S) -> [[S; 2]; 3] {
+    let s = S::ONE - t;
+    let (s2, t2) = (s + s, t + t);
+    [[s * s, -s2], [s2 * t, s2 - t2], [t * t, t2]]
+}
+
+/// [`jet`] for an order known when compiling; `N` is `R · C`.
+#[inline(always)]
+fn jet_unrolled<S: Scalar, T: Linear<S>, const R: usize, const C: usize, const N: usize>(
+    net: &[T; N],
+    bu: &[[S; 2]; R],
+    bv: &[[S; 2]; C],
+) -> Jet<T> {
+    const { assert!(R * C == N && R > 0 && C > 0) }
+    let mut jet = Jet { point: T::ZERO, du: T::ZERO, dv: T::ZERO };
+    for i in 0..R {
+        let (mut point, mut dv) = (net[i * C] * bv[0][0], net[i * C] * bv[0][1]);
+        for j in 1..C {
+            point = point + net[i * C + j] * bv[j][0];
+            dv = dv + net[i * C + j] * bv[j][1];
+        }
+        jet.point = jet.point + point * bu[i][0];
+        jet.du = jet.du + point * bu[i][1];
+        jet.dv = jet.dv + dv * bu[i][0];
+    }
+    jet
+}
