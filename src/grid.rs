@@ -219,7 +219,7 @@ pub struct GridOptions<S> {
 
 impl<S: Scalar> Default for GridOptions<S> {
     fn default() -> Self {
-        GridOptions { density: S::from_f64(4.0), voxels: 1 << 22 }
+        GridOptions { density: S::from_f64(3.0), voxels: 1 << 22 }
     }
 }
 

@@ -33,6 +33,7 @@ pub mod walk;
 
 pub mod newton;
 
+pub mod sweep;
 pub mod verify;
 
 pub mod scene;

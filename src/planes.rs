@@ -64,20 +64,6 @@ pub struct Projected<S> {
     pub depth: S,
 }
 
-impl<S: Scalar> Projected<S> {
-    /// The two-dimensional cross product of the (f, g) parts.
-    #[inline(always)]
-    pub(crate) fn cross(&self, other: &Self) -> S {
-        self.f * other.g - self.g * other.f
-    }
-
-    /// |f| + |g|, which is at least √(f² + g²).
-    #[inline(always)]
-    pub(crate) fn norm(&self) -> S {
-        self.f.abs() + self.g.abs()
-    }
-}
-
 impl<S: Scalar> Planes<S> {
     /// From the parts that [`Frame::enter`](crate::frame::Frame::enter) has.
     #[inline(always)]
@@ -244,15 +230,16 @@ mod tests {
             let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
             for t in [0.0, 0.0625, 0.125] {
                 let p = planes.point(&ray.at(t));
-                assert!(p.norm() < 1e-15, "{p:?}");
+                assert!(p.f.abs() + p.g.abs() < 1e-15, "{p:?}");
                 assert!((planes.t(p.depth) - t).abs() < 1e-15);
             }
             // A weight multiplies all three, and its point stays on the ray.
             let w = planes.weighted(Weighted::new(ray.at(0.125), 4.0));
-            assert!(w.norm() < 1e-14 && (planes.t(w.depth / 4.0) - 0.125).abs() < 1e-15);
+            assert!(w.f.abs() + w.g.abs() < 1e-14 && (planes.t(w.depth / 4.0) - 0.125).abs() < 1e-15);
             let mut out = heapless::Vec::<_, 4>::new();
-            project_net(&[Plain([0.5, 0.25, 0.0]); 4], &planes, &mut out).unwrap();
-            assert!(out.iter().all(|q| *q == out[0]));
+            let points = [Plain(ray.at(0.125)); 4];
+            let flat = project_net(&Net::new(1, 1, &points).unwrap(), &planes, &mut out).unwrap();
+            assert!(flat.len() == 4 && flat.iter().all(|q| q.0.iter().all(|c| c.abs() < 1e-15)));
         }
     }
 

@@ -44,6 +44,8 @@ pub trait Scalar:
     const TWO: Self;
     /// Positive infinity.
     const INFINITY: Self;
+    /// Negative infinity.
+    const LEAST: Self;
     /// The spacing of the numbers just above 1 (2⁻²³ or 2⁻⁵²).
     const EPSILON: Self;
     /// The largest finite number.
@@ -159,6 +161,7 @@ macro_rules! scalar {
             const ONE: Self = 1.0;
             const TWO: Self = 2.0;
             const INFINITY: Self = $float::INFINITY;
+            const LEAST: Self = $float::NEG_INFINITY;
             const EPSILON: Self = $float::EPSILON;
             const MAX: Self = $float::MAX;
             const MIN_POSITIVE: Self = $float::MIN_POSITIVE;

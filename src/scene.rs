@@ -71,7 +71,7 @@ pub struct SceneOptions<S> {
 
 impl<S: Scalar> Default for SceneOptions<S> {
     fn default() -> Self {
-        SceneOptions { density: S::from_f64(8.0), voxels: 1 << 20 }
+        SceneOptions { density: S::from_f64(2.0), voxels: 1 << 20 }
     }
 }
 
@@ -272,9 +272,9 @@ impl<'m, P: Point> Scene<'m, P> {
             let mut walk = grid.walk(&origin, &inverse, range.max);
             // Ends with the walk, or where no later voxel can hold a closer root.
             while let Some(voxel) = walk.advance() {
-                let voxel = voxel.map_err(|()| Limit::Slot)?;
+                let mut voxel = voxel.map_err(|()| Limit::Slot)?;
                 spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
-                for number in voxel.fresh() {
+                while let Some(number) = voxel.next_fresh() {
                     let slot = self.surfaces.get(number).ok_or(Limit::Slot)?;
                     spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
                     let Some((near, far)) = slot.bounds.depths(&origin, &inverse) else {

@@ -4,11 +4,12 @@
 //! meets patches; the caller learns of each as it is met, so that no list is stored (a departure in order only).
 
 use crate::grid::Grid;
-use crate::limits::{Limit, Limits, Work, spend};
+use crate::limits::{Limit, Limits, Work};
 use crate::newton::Root;
 use crate::patch::{Crossing, Patch};
 use crate::planes::{DepthRange, Planes};
 use crate::scalar::Scalar;
+use crate::sweep::Sweep;
 
 /// A patch whose parallelepiped the testing ray meets.
 #[derive(Clone, Copy, Debug)]
@@ -36,22 +37,14 @@ pub fn testing_ray<'m, S: Scalar>(
     let (origin, direction) = (planes.origin(), planes.direction());
     let start = core::array::from_fn(|k| origin[k] + direction[k] * root.depth);
     let inverse = planes.inverse().map(|c| -c);
-    let mut walk = grid.walk(&start, &inverse, root.depth - nearest);
+    let mut sweep = Sweep::new(grid.walk(&start, &inverse, root.depth - nearest), patches);
     let range = DepthRange { min: nearest, max: root.depth };
     // Ends with the walk.
-    while let Some(voxel) = walk.advance() {
-        let voxel = voxel.map_err(|()| Limit::Slot)?;
-        spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
-        for item in voxel.fresh() {
-            let patch = patches.get(item).ok_or(Limit::Slot)?;
-            spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
-            if let Some(crossing) = patch.bounds().crossing(planes) {
-                let owner = patch.domain().holds(root.u, root.v);
-                // The owner's box holds the point; another's counts if it reaches between point and origin.
-                if owner || reaches(&crossing, &range) {
-                    visit(Listed { patch, crossing, owner }, work)?;
-                }
-            }
+    while let Some((patch, crossing)) = sweep.next_patch(planes, S::INFINITY, limits, work)? {
+        let owner = patch.domain().holds(root.u, root.v);
+        // The owner's box holds the point; another's counts if it reaches between point and origin.
+        if owner || reaches(&crossing, &range) {
+            visit(Listed { patch, crossing, owner }, work)?;
         }
     }
     Ok(())

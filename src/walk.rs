@@ -18,11 +18,20 @@ pub struct Voxel<'m, S> {
 }
 
 impl<'m, S: Scalar> Voxel<'m, S> {
-    /// The items that the line meets here for the first time.
+    /// No voxel: before a walk.
+    pub const NONE: Self = Voxel { references: &[], came_from: 0, exit: S::LEAST };
+
+    /// The next of the items that the line meets here for the first time.
     #[inline(always)]
-    pub fn fresh(&self) -> impl Iterator<Item = usize> + use<'m, S> {
-        let came_from = self.came_from;
-        self.references.iter().filter(move |&&r| r & came_from == 0).map(|&r| (r & ITEM_MASK) as usize)
+    pub fn next_fresh(&mut self) -> Option<usize> {
+        // Ends with the references.
+        while let Some((&reference, rest)) = self.references.split_first() {
+            self.references = rest;
+            if reference & self.came_from == 0 {
+                return Some((reference & ITEM_MASK) as usize);
+            }
+        }
+        None
     }
 }
 
@@ -75,31 +84,35 @@ impl<'m, S: Scalar> Grid<'m, S> {
     #[inline(always)]
     pub fn walk(&self, start: &[S; 3], inverse: &[S; 3], length: S) -> Walk<'m, S> {
         let slot = self.slot;
-        let strides = [1, slot.counts[0] as usize, slot.counts[0] as usize * slot.counts[1] as usize];
-        let mut voxel = 0_usize;
-        let axes = core::array::from_fn(|k| {
+        let [x, y, _] = slot.counts.map(|n| n as usize);
+        let (offsets, references) = (self.offsets, self.references);
+        let done = slot.counts.contains(&0);
+        let mut walk = Walk { offsets, references, axes: [Across::NONE; 3], voxel: 0, length, came_from: 0, done };
+        // Written in place: the walk is large, and building its parts apart would copy them.
+        let mut stride = 1_usize;
+        for k in 0..3 {
             let at = slot.index(start[k], k);
-            voxel = voxel.wrapping_add(at as usize * strides[k]);
+            walk.voxel = walk.voxel.wrapping_add((at as usize).wrapping_mul(stride));
             let forward = inverse[k] > S::ZERO;
             // Walls are numbered in the line's direction, 0 being the one behind the first voxel.
             let wall = if forward { at } else { at + 1 };
-            let base = (slot.bounds.low[k] + S::from_u32(wall) * slot.cell[k] - start[k]) * inverse[k];
-            let step = slot.cell[k] * inverse[k].abs();
-            let next = base + step;
-            Across {
-                // A line along the walls never crosses one; its base is infinite or NaN.
-                next: if inverse[k].is_finite() { next } else { S::INFINITY },
-                base,
-                step,
-                wall: S::ONE,
-                stride: if forward { strides[k] } else { strides[k].wrapping_neg() },
-                left: if forward { slot.counts[k].saturating_sub(at + 1) } else { at },
-                behind: 1 << (ITEM_BITS + 2 * k as u32 + u32::from(!forward)),
-            }
-        });
-        let (offsets, references) = (self.offsets, self.references);
-        Walk { offsets, references, axes, voxel, length, came_from: 0, done: slot.counts.contains(&0) }
+            let across = &mut walk.axes[k];
+            across.base = (slot.bounds.low[k] + S::from_u32(wall) * slot.cell[k] - start[k]) * inverse[k];
+            across.step = slot.cell[k] * inverse[k].abs();
+            // A line along the walls never crosses one; its base is infinite or NaN.
+            across.next = if inverse[k].is_finite() { across.base + across.step } else { S::INFINITY };
+            across.stride = if forward { stride } else { stride.wrapping_neg() };
+            across.left = if forward { slot.counts[k].saturating_sub(at + 1) } else { at };
+            across.behind = 1 << (ITEM_BITS + 2 * k as u32 + u32::from(!forward));
+            stride = if k == 0 { x } else { x.wrapping_mul(y) };
+        }
+        walk
     }
+}
+
+impl<S: Scalar> Across<S> {
+    const NONE: Self =
+        Across { next: S::ZERO, base: S::ZERO, step: S::ZERO, wall: S::ONE, stride: 0, left: 0, behind: 0 };
 }
 
 impl<'m, S: Scalar> Walk<'m, S> {

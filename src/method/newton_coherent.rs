@@ -14,7 +14,7 @@
 use super::starts::{First, from_patch};
 use super::{ScratchView, keep_closest};
 use crate::grid::{Grid, Grids};
-use crate::limits::{Acceptance, GaveUp, Limit, Limits, Work, spend};
+use crate::limits::{Acceptance, GaveUp, Limit, Limits, Work};
 use crate::newton::{Root, Solver};
 use crate::patch::{Crossing, Patch};
 use crate::planes::DepthRange;
@@ -23,6 +23,7 @@ use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::subdivide::Patches;
 use crate::surface::Point;
+use crate::sweep::Sweep;
 use crate::verify::testing_ray;
 
 /// Coherence memory: what the previous ray of a scan line left on one surface. A slot of memory that the caller lends, one
@@ -140,30 +141,20 @@ impl<P: Point> Search<'_, '_, '_, P> {
     fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         let (planes, limits) = (self.solver.planes, self.solver.limits);
         work.full_searches += 1;
-        let Some((mut walk, begin)) = self.grid.enter(planes, &self.range) else {
+        let Some((walk, begin)) = self.grid.enter(planes, &self.range) else {
             return Ok(None);
         };
-        let mut best: Option<Root<P::Scalar>> = None;
+        let mut sweep = Sweep::new(walk, self.patches);
+        let (mut best, mut enough) = (None, P::Scalar::INFINITY);
         // Ends with the walk.
-        while let Some(voxel) = walk.advance() {
-            let voxel = voxel.map_err(|()| Limit::Slot)?;
-            spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
-            for item in voxel.fresh() {
-                let patch = self.patches.get(item).ok_or(Limit::Slot)?;
-                spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
-                let Some(crossing) = patch.bounds().crossing(planes) else {
-                    continue;
-                };
-                if !crossing.overlaps(&self.range) {
-                    continue;
-                }
-                if let Some(root) = from_patch(&mut self.solver, patch, &crossing, First::AsCritical, work)? {
-                    keep_closest(&mut best, root, planes, &mut work.intersection_points);
-                }
+        while let Some((patch, crossing)) = sweep.next_patch(planes, enough, limits, work)? {
+            if !crossing.overlaps(&self.range) {
+                continue;
             }
-            // A root counts only once the walk has come to it: a patch not met yet may hold a closer one.
-            if best.is_some_and(|root| root.depth <= begin + voxel.exit) {
-                break;
+            if let Some(root) = from_patch(&mut self.solver, patch, &crossing, First::AsCritical, work)? {
+                keep_closest(&mut best, root, planes, &mut work.intersection_points);
+                // A root counts only once the walk has come to it: a patch not met yet may hold a closer one.
+                enough = best.map_or(enough, |closest: Root<P::Scalar>| closest.depth - begin);
             }
         }
         Ok(best)
