@@ -32,7 +32,7 @@ pub struct Subdivision<S> {
 impl<S: Scalar> Default for Subdivision<S> {
     /// The flatness at which the teapot makes about the paper's 7,594 patches.
     fn default() -> Self {
-        Subdivision { flatness: S::from_f64(4.6e-4), depth: MAX_LEVEL, patches_per_surface: 1 << 20, padding: PADDING }
+        Subdivision { flatness: S::from_f64(6.6e-4), depth: MAX_LEVEL, patches_per_surface: 1 << 20, padding: PADDING }
     }
 }
 

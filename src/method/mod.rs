@@ -42,7 +42,8 @@ impl<P: Point, const ORDER: usize, const POINTS: usize> Default for Scratch<P, O
 /// A view of [`Scratch`] without its capacities.
 #[derive(Debug)]
 pub struct ScratchView<'s, P: Point> {
-    flat: &'s mut VecView<P::Flat>,
+    /// Room for a surface's projected net.
+    pub flat: &'s mut VecView<P::Flat>,
     /// Room for evaluating a surface.
     pub basis: BasisView<'s, P::Scalar>,
 }
