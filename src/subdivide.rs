@@ -24,7 +24,7 @@ pub struct Subdivision<S> {
     pub depth: u32,
     /// The most patches a surface may make; more is refused.
     pub patches_per_surface: u32,
-    /// By how many roundings boxes are larger than what they enclose; see [`PADDING`](crate::frame::PADDING). Less than
+    /// By how many roundings boxes are larger than what they enclose; see [`PADDING`]. Less than
     /// that makes tests that rounding can turn into misses.
     pub padding: u32,
 }

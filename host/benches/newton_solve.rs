@@ -26,15 +26,15 @@ where
     let surface = scene.surface(0).expect("there is a surface");
     let mut scratch = Scratch::<P, ORDER, NET>::new();
     let mut view = scratch.view();
-    let target = surface.net.position(number(0.55), number(0.45), &mut view.basis).expect("the scratch is large enough");
+    let target =
+        surface.net.position(number(0.55), number(0.45), &mut view.basis).expect("the scratch is large enough");
     let back = P::Scalar::ONE.times_power_of_two(-scene.frame().exponent());
     let direction = [number(0.3), number(-0.2), number(-1.0)];
     let origin = std::array::from_fn(|k| target[k] * back - direction[k] * number(4.0));
     let ray = scene.ray(origin, direction).expect("the ray is valid");
     let (planes, _) = scene.frame().enter(&ray, &Interval::ahead()).expect("the ray meets the scene");
-    let owner = patches.of_surface(0).and_then(|all| {
-        all.iter().find(|patch| patch.domain().holds(number(0.55), number(0.45)))
-    });
+    let owner =
+        patches.of_surface(0).and_then(|all| all.iter().find(|patch| patch.domain().holds(number(0.55), number(0.45))));
     let patch = owner.expect("a patch holds the point");
     let crossing = patch.bounds().crossing(&planes).expect("the ray meets the patch");
     let start = patch.parallelogram(&crossing).expect("the patch is not edge on");

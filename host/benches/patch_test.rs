@@ -21,7 +21,9 @@ fn test<P: FromFile + Point>(criterion: &mut Criterion, precision: &str) {
     let mut group = criterion.benchmark_group("patch_test");
     group.throughput(Throughput::Elements(patches.all().len() as u64));
     group.bench_function(precision, |bencher| {
-        bencher.iter(|| patches.all().iter().filter(|patch| patch.bounds().crossing(black_box(&planes)).is_some()).count());
+        bencher.iter(|| {
+            patches.all().iter().filter(|patch| patch.bounds().crossing(black_box(&planes)).is_some()).count()
+        });
     });
     group.finish();
 }

@@ -1,2 +1,62 @@
 //! The command `patchray`.
-fn main() {}
+
+use std::io::IsTerminal;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use miette::MietteHandlerOpts;
+use patchray_host::cmd::{Failure, demo, info, query, render};
+
+/// Traces rays against Bézier surfaces themselves, without tessellation.
+///
+/// Without a verb it draws the built-in teapot with every method, compares each pixel with the oracle, and prints a table.
+///
+/// Exit codes: 0 done, 1 the answer is no, 2 usage, 3 input refused, 4 capacity, 5 internal or I/O.
+#[derive(Parser, Debug)]
+#[command(name = "patchray", version, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Option<Verb>,
+    #[command(flatten)]
+    demo: demo::DemoArgs,
+}
+
+#[derive(Subcommand, Debug)]
+enum Verb {
+    /// Draw a scene
+    Render(render::RenderArgs),
+    /// Answer a batch of rays
+    Query(query::QueryArgs),
+    /// Say what a file holds, and the memory that each method needs for it
+    Info(info::InfoArgs),
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let result = match &cli.verb {
+        None => demo::run(&cli.demo),
+        Some(Verb::Render(args)) => render::run(args),
+        Some(Verb::Query(args)) => query::run(args),
+        Some(Verb::Info(args)) => info::run(args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => report(failure),
+    }
+}
+
+/// How wide messages are where there is no terminal: wide enough that places and names stay on one line.
+const WIDTH: usize = 240;
+
+/// Prints why the command failed; the exit code that goes with it.
+fn report(failure: Failure) -> ExitCode {
+    let code = failure.code();
+    if code != 0 {
+        if !std::io::stderr().is_terminal() {
+            // Fails only if a hook is set already; the default then does as well.
+            let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().width(WIDTH).build())));
+        }
+        patchray_host::cmd::say(format_args!("{:?}", miette::Report::new(failure)));
+    }
+    ExitCode::from(code)
+}

@@ -1,10 +1,6 @@
 use super::*;
 use rayon::prelude::*;
 
-fn teapot() -> Model {
-    crate::scene::teapot::model().expect("the built-in teapot is valid")
-}
-
 /// The ray through a pixel of the common view, 512 x 512.
 fn common_ray(px: usize, py: usize) -> ([f64; 3], [f64; 3]) {
     let sx = (2.0 * px as f64 - 511.0) / 512.0;
@@ -16,7 +12,7 @@ fn common_ray(px: usize, py: usize) -> ([f64; 3], [f64; 3]) {
 
 #[test]
 fn the_common_view_has_its_known_counts() {
-    let oracle = Oracle::new(&teapot());
+    let oracle = Oracle::new(&crate::scene::teapot::model().expect("the fixture is valid"));
     let start = std::time::Instant::now();
     let verdicts: Vec<Verdict> = (0..512 * 512usize)
         .into_par_iter()

@@ -96,7 +96,7 @@ impl<W: Write> Answers<W> {
     /// What `output` ran into.
     pub fn new(output: W) -> io::Result<Self> {
         let mut csv = csv::Writer::from_writer(output);
-        csv.write_record(["ray", "hit", "t", "u", "v", "patch", "nx", "ny", "nz", "status"])?;
+        csv.write_record(["ray", "hit", "t", "u", "v", "patch", "nx", "ny", "nz", "status"]).map_err(as_io)?;
         Ok(Self { csv, next: 0, field: String::new() })
     }
 
@@ -123,7 +123,7 @@ impl<W: Write> Answers<W> {
         }
         let (status, limit) = answer.status();
         self.write(format_args!("{status}{limit}"))?;
-        Ok(self.csv.write_record(None::<&[u8]>)?)
+        self.csv.write_record(None::<&[u8]>).map_err(as_io)
     }
 
     /// Writes out what is pending.
@@ -145,7 +145,15 @@ impl<W: Write> Answers<W> {
         self.field.clear();
         // Writing to a string cannot fail.
         let _ = std::fmt::Write::write_fmt(&mut self.field, field);
-        Ok(self.csv.write_field(&self.field)?)
+        self.csv.write_field(&self.field).map_err(as_io)
+    }
+}
+
+/// What the output ran into, of its own kind: the conversion that `csv` brings would make a broken pipe any failure.
+fn as_io(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(reason) => reason,
+        other => io::Error::other(format!("{other:?}")),
     }
 }
 

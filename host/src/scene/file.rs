@@ -33,14 +33,14 @@
 //!     method = "newton-coherent"
 //!     precision = "f64"
 //!     acceptance = "paper"
-//!     newton_iterations = 8
+//!     newton_iterations = 12
 //!     newton_starts = 3
-//!     flatness = 0.05
-//!     grid_density = 1.0
+//!     flatness = 0.0005
+//!     grid_density = 4.0
 //!     threads = 2
 //!
 //!     [trace.limits]
-//!     voxels-per-ray = 10000
+//!     voxels = 10000
 //! "#;
 //! let description = file::parse("scene.toml", text)?;
 //! assert_eq!(description.image.size, [640, 480]);

@@ -59,21 +59,58 @@ pub struct RayBatch {
 /// # Errors
 /// The file cannot be read, is not in the format, or holds an invalid ray that is not to be skipped.
 pub fn read(path: &Path, on_invalid: OnInvalid) -> Result<RayBatch, InputError> {
-    let unreadable = |reason| InputError::unreadable(path, reason);
-    let name = path.display().to_string();
-    let whole = |input: &mut dyn Read| {
-        let mut bytes = Vec::new();
-        input.read_to_end(&mut bytes).map(|_| Cursor::new(bytes)).map_err(unreadable)
-    };
-    if path == Path::new("-") {
-        return Reader::new(&name, whole(&mut io::stdin().lock())?, on_invalid).batch();
+    Rays::open(path, on_invalid)?.0.batch()
+}
+
+/// An open ray file, read block by block, so that a batch of any length takes the memory of a block.
+pub struct Rays(Reader<Box<dyn ReadSeek>>);
+
+/// What a ray file is read from: an error shows its line again.
+trait ReadSeek: Read + Seek {}
+
+impl<R: Read + Seek> ReadSeek for R {}
+
+/// A check of a ray beyond what the file's format asks for: why it cannot be traced, if it cannot.
+pub type CheckRay<'a> = &'a dyn Fn(&RayLine) -> Option<String>;
+
+impl Rays {
+    /// Opens the ray file at `path` and reads its header; `-` is standard input. A pipe is read whole.
+    ///
+    /// # Errors
+    /// The file cannot be read, or its header is not one.
+    pub fn open(path: &Path, on_invalid: OnInvalid) -> Result<Self, InputError> {
+        let unreadable = |reason| InputError::unreadable(path, reason);
+        let whole = |input: &mut dyn Read| {
+            let mut bytes = Vec::new();
+            input.read_to_end(&mut bytes).map(|_| Cursor::new(bytes)).map_err(unreadable)
+        };
+        let input: Box<dyn ReadSeek> = if path == Path::new("-") {
+            Box::new(whole(&mut io::stdin().lock())?)
+        } else {
+            let mut file = File::open(path).map_err(unreadable)?;
+            if file.metadata().map_err(unreadable)?.is_file() {
+                Box::new(file)
+            } else {
+                // A pipe gives a line only once, and an error shows it again.
+                Box::new(whole(&mut file)?)
+            }
+        };
+        Ok(Rays(Reader::new(&path.display().to_string(), input, on_invalid)?))
     }
-    let mut file = File::open(path).map_err(unreadable)?;
-    if file.metadata().map_err(unreadable)?.is_file() {
-        Reader::new(&name, file, on_invalid).batch()
-    } else {
-        // A pipe gives a line only once, and an error shows it again.
-        Reader::new(&name, whole(&mut file)?, on_invalid).batch()
+
+    /// Replaces the rays of `batch` by the next ones, at most `most`, and adds to its count of those that are not valid;
+    /// no rays means the end. A ray that `check` finds fault with is not valid either.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not in the format, or holds an invalid ray that is not to be skipped.
+    pub fn next(&mut self, most: usize, check: CheckRay, batch: &mut RayBatch) -> Result<(), InputError> {
+        batch.rays.clear();
+        self.0.block(most, check, batch)
+    }
+
+    /// How far into the file reading has come, in bytes.
+    pub fn position(&self) -> u64 {
+        self.0.input.position().byte()
     }
 }
 
@@ -82,7 +119,7 @@ pub fn read(path: &Path, on_invalid: OnInvalid) -> Result<RayBatch, InputError> 
 /// # Errors
 /// As [`read`], the text being there.
 pub fn parse(name: &str, text: &str, on_invalid: OnInvalid) -> Result<RayBatch, InputError> {
-    Reader::new(name, Cursor::new(text), on_invalid).batch()
+    Reader::new(name, Cursor::new(text), on_invalid)?.batch()
 }
 
 /// What an error points at.
@@ -99,54 +136,75 @@ struct Fault {
     help: String,
 }
 
-struct Reader<'a, R> {
-    name: &'a str,
+struct Reader<R> {
+    name: String,
     input: csv::Reader<R>,
     on_invalid: OnInvalid,
+    columns: Columns,
+    /// The fields of the header.
+    fields: usize,
+    /// The number of the next ray.
+    number: usize,
 }
 
-impl<'a, R: Read + Seek> Reader<'a, R> {
-    fn new(name: &'a str, input: R, on_invalid: OnInvalid) -> Self {
+impl<R: Read + Seek> Reader<R> {
+    fn new(name: &str, input: R, on_invalid: OnInvalid) -> Result<Self, InputError> {
         // The header is read like any line, and lines of any length are let through, so that all messages are ours.
         let input = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(input);
-        Self { name, input, on_invalid }
-    }
-
-    fn batch(mut self) -> Result<RayBatch, InputError> {
-        let mut record = StringRecord::new();
-        if !self.next(&mut record)? {
+        let columns = Columns::default();
+        let mut reader = Self { name: name.to_owned(), input, on_invalid, columns, fields: 0, number: 0 };
+        let mut header = StringRecord::new();
+        if !reader.next(&mut header)? {
             let fault = Fault {
                 at: At::WholeLine,
                 message: "the file is empty".to_owned(),
                 help: format!("the first line names the columns: {}", allowed()),
             };
-            return Err(self.refusal(&record, fault).into());
+            return Err(reader.refusal(&header, fault).into());
         }
-        let columns = match columns::of_header(&record) {
+        reader.columns = match columns::of_header(&header) {
             Ok(columns) => columns,
-            Err(fault) => return Err(self.refusal(&record, fault).into()),
+            Err(fault) => return Err(reader.refusal(&header, fault).into()),
         };
-        let fields = record.len();
+        reader.fields = header.len();
+        Ok(reader)
+    }
+
+    /// All rays.
+    fn batch(mut self) -> Result<RayBatch, InputError> {
         let mut batch = RayBatch::default();
-        while self.next(&mut record)? {
-            let mut ray = match ray(&record, &columns, fields) {
+        self.block(usize::MAX, &|_| None, &mut batch)?;
+        Ok(batch)
+    }
+
+    /// Appends the next rays, at most `most`.
+    fn block(&mut self, most: usize, check: CheckRay, batch: &mut RayBatch) -> Result<(), InputError> {
+        let mut record = StringRecord::new();
+        // Ends with the file, or with the block.
+        while batch.rays.len() < most && self.next(&mut record)? {
+            let mut ray = match ray(&record, &self.columns, self.fields) {
                 Ok(ray) => ray,
                 Err(fault) => return Err(self.refusal(&record, fault).into()),
             };
-            if let Some(fault) = invalid(&record, &columns, &ray) {
+            let fault = invalid(&record, &self.columns, &ray).or_else(|| {
+                let help = "bring origin, direction and surfaces to like sizes, or use --precision f64";
+                check(&ray).map(|message| Fault { at: At::WholeLine, message, help: help.to_owned() })
+            });
+            if let Some(fault) = fault {
                 if self.on_invalid == OnInvalid::Refuse {
                     return Err(self.refusal(&record, fault).into());
                 }
                 if batch.first_invalid.is_none() {
                     let why = self.refusal(&record, fault);
-                    batch.first_invalid = Some(Skipped::from_refusal("ray", batch.rays.len(), &why));
+                    batch.first_invalid = Some(Skipped::from_refusal("ray", self.number, &why));
                 }
                 ray.valid = false;
                 batch.invalid += 1;
             }
             batch.rays.push(ray);
+            self.number += 1;
         }
-        Ok(batch)
+        Ok(())
     }
 
     /// Reads the next line that is not blank; whether there was one.
@@ -158,7 +216,7 @@ impl<'a, R: Read + Seek> Reader<'a, R> {
     fn broken(&mut self, error: csv::Error) -> InputError {
         let position = error.position().cloned();
         match (error.into_kind(), position) {
-            (csv::ErrorKind::Io(reason), _) => InputError::unreadable(Path::new(self.name), reason),
+            (csv::ErrorKind::Io(reason), _) => InputError::unreadable(Path::new(&self.name), reason),
             (_, Some(position)) => {
                 let mut record = StringRecord::new();
                 record.set_position(Some(position));
@@ -169,7 +227,7 @@ impl<'a, R: Read + Seek> Reader<'a, R> {
                 };
                 self.refusal(&record, fault).into()
             }
-            (kind, None) => InputError::unreadable(Path::new(self.name), io::Error::other(format!("{kind:?}"))),
+            (kind, None) => InputError::unreadable(Path::new(&self.name), io::Error::other(format!("{kind:?}"))),
         }
     }
 
@@ -187,7 +245,7 @@ impl<'a, R: Read + Seek> Reader<'a, R> {
         };
         let span = start + span.start..start + span.end;
         let excerpt = Excerpt::of_line(text, line + blank, start, span.clone());
-        Refusal::new(self.name, excerpt, span, fault.message, "here".to_owned(), fault.help)
+        Refusal::new(&self.name, excerpt, span, fault.message, "here".to_owned(), fault.help)
     }
 
     /// The first line that is not blank from byte `start` of the file, and how many lines were passed over to get there.

@@ -3,24 +3,25 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use clap::ValueEnum;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::check::Check;
 use super::error::InputError;
 
 /// The algorithm that finds hits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Patches in a binary tree, and Newton's iteration from each patch that the ray hits.
     Newton,
     /// Patches in a grid, and Newton's iteration from the previous ray's hit, verified by a testing ray.
+    #[default]
     NewtonCoherent,
 }
 
 /// The precision in which hits are computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
     /// 32 bits.
@@ -31,7 +32,7 @@ pub enum Precision {
 }
 
 /// When a coherent method takes a point for the only one of its patch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Acceptance {
     /// As the paper does: eq. (1), factor 1.
@@ -40,6 +41,12 @@ pub enum Acceptance {
     /// Only where at most one hit is proved.
     Proved,
 }
+
+/// The most Newton starts per patch: the parallelogram, the entrance and the exit are all there are.
+pub const MAX_STARTS: u32 = 3;
+
+/// The most threads. More would let a slip of the pen ask for millions.
+pub const MAX_THREADS: u32 = 1024;
 
 /// The table `[trace]`. What it does not give is `None`, and left to the command line and the kernel's defaults.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,13 +59,13 @@ pub struct TraceSettings {
     pub acceptance: Option<Acceptance>,
     /// Newton iterations per start, at least 1.
     pub newton_iterations: Option<u32>,
-    /// Newton starts per patch, at least 1.
+    /// Newton starts per patch, 1 to [`MAX_STARTS`].
     pub newton_starts: Option<u32>,
     /// The bound, above 0, to which surfaces are subdivided: less makes more and flatter patches.
     pub flatness: Option<f64>,
     /// Voxels of a grid per patch in it, above 0: more makes smaller voxels.
     pub grid_density: Option<f64>,
-    /// Threads, at least 1.
+    /// Threads, 1 to [`MAX_THREADS`].
     pub threads: Option<u32>,
     /// The table `[trace.limits]`, sorted by name; the names are not checked here.
     pub limits: Vec<LimitSetting>,
@@ -95,6 +102,15 @@ impl TraceTable {
         let count = |name: &str, number: &Option<Spanned<u32>>| {
             number.as_ref().map(|number| check.count(name, number)).transpose()
         };
+        let at_most = |name: &str, number: &Option<Spanned<u32>>, most: u32| match number {
+            Some(given) if *given.get_ref() > most => Err(check.source.refuse(
+                given.span(),
+                format!("{name} is {}", given.get_ref()),
+                "too many",
+                format!("write a whole number from 1 to {most}"),
+            )),
+            _ => count(name, number),
+        };
         let positive = |name: &str, number: &Option<Spanned<f64>>| {
             number.as_ref().map(|number| check.positive(name, number)).transpose()
         };
@@ -103,10 +119,10 @@ impl TraceTable {
             precision: self.precision,
             acceptance: self.acceptance,
             newton_iterations: count("`newton_iterations`", &self.newton_iterations)?,
-            newton_starts: count("`newton_starts`", &self.newton_starts)?,
+            newton_starts: at_most("`newton_starts`", &self.newton_starts, MAX_STARTS)?,
             flatness: positive("`flatness`", &self.flatness)?,
             grid_density: positive("`grid_density`", &self.grid_density)?,
-            threads: count("`threads`", &self.threads)?,
+            threads: at_most("`threads`", &self.threads, MAX_THREADS)?,
             limits: self
                 .limits
                 .into_iter()

@@ -192,7 +192,7 @@ fn an_answer_outlasts_a_displacement_within_its_margin() {
     let mut random = Random(19);
     let mut surfaces = sphere([0.0; 3], 1.0).surfaces;
     surfaces.extend((0..4).map(|k| bumpy(k, [3, 4], [0.4 * k as f64 - 0.6, 0.2, 0.0], 1.5, 1.5)));
-    let model = Model::numbered(surfaces);
+    let model = Model { surfaces };
     let oracle = Oracle::new(&model);
     let corner = |pick: fn(f64, f64) -> f64, k: usize| {
         let points = model.surfaces.iter().flat_map(|s| &s.points);

@@ -1,0 +1,250 @@
+//! `patchray` without a verb: the built-in teapot, drawn with every method and compared with the oracle.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::render::{draw, row};
+use super::{Failure, StatsOutputs, check_outputs, pool, progress};
+use crate::judge::{Agreement, Truth, allowance};
+use crate::lower::Stages;
+use crate::oracle::Oracle;
+use crate::output::{Output, OutputError};
+use crate::prepared::Prepared;
+use crate::scene::camera::View;
+use crate::scene::file::Scene;
+use crate::scene::teapot::common_scene;
+use crate::scene::trace::{Method, Precision};
+use crate::settings::{Flags, Settings, SizeFlag};
+use crate::stats::{SCHEMA, Stats};
+
+/// The command line without a verb.
+#[derive(Args, Clone, Debug)]
+pub struct DemoArgs {
+    /// The size of the picture.
+    #[command(flatten)]
+    pub size: SizeFlag,
+    /// The common flags.
+    #[command(flatten)]
+    pub flags: Flags,
+}
+
+/// What the oracle found in the view.
+#[derive(Clone, Debug, Serialize)]
+struct OracleStats {
+    rays: u64,
+    hit_rays: u64,
+    roots: u64,
+    /// Rays whose answer the oracle leaves open.
+    open: u64,
+    /// Summed over threads.
+    seconds: f64,
+}
+
+/// A method in a precision, and how it did.
+#[derive(Clone, Debug, Serialize)]
+struct Run {
+    #[serde(flatten)]
+    stats: Stats,
+    ns_per_ray: f64,
+    /// How many rays the method answers in the time in which the oracle answers one.
+    times_oracle: f64,
+    agreement: Agreement,
+}
+
+/// All runs, as `--stats` and `--json` give them.
+#[derive(Clone, Debug, Serialize)]
+struct Report {
+    schema: u32,
+    picture: String,
+    oracle: OracleStats,
+    runs: Vec<Run>,
+}
+
+/// Where the picture goes if `-o` does not say.
+const PICTURE: &str = "target/teapot.png";
+
+/// Draws the teapot with every method in every precision, or with those that the flags name; prints a table of times,
+/// counts and agreement with the oracle, and the name of the picture: that of the last run, all being the same but for
+/// pixels that the table counts. In `f32` rays are rounded; those of the common view at 512 × 512 are exact.
+///
+/// # Errors
+/// Too little memory for the settings, or an output that cannot be written.
+pub fn run(args: &DemoArgs) -> Result<(), Failure> {
+    let DemoArgs { size, flags } = args;
+    let output = match &flags.output {
+        Some(output) => output.clone(),
+        None => default_picture()?,
+    };
+    let table = if flags.json { None } else { Some(Path::new("-")) };
+    if table.is_some() && (output == Path::new("-") || flags.stats.as_deref() == table) {
+        return Err(Failure::Usage {
+            message: "the table goes to standard output".to_owned(),
+            help: "name files with -o and --stats, or use --json instead of the table".to_owned(),
+        });
+    }
+    check_outputs(Some(&output), flags)?;
+    let Scene { model, description, .. } = common_scene()?;
+    let settings = Settings::of_flags(flags);
+    let mut png = Output::create(&output)?;
+    let stats_outputs = StatsOutputs::create(flags)?;
+    let view = description.camera.view(size.size.unwrap_or(description.image.size));
+    let pool = pool(settings.threads)?;
+    let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());
+
+    let (truths, oracle) = pool.install(|| ask_oracle(&Oracle::new(&model), &view, flags.quiet));
+    let mut runs = Vec::new();
+    let mut picture = None;
+    for settings in combinations(flags, &settings) {
+        let begin = Instant::now();
+        let prepared = Prepared::build(&model, Stages::of(settings.method), &settings)?;
+        let prepare_seconds = begin.elapsed().as_secs_f64();
+        let bar = progress(u64::from(view.size[1]), "drawing", flags.quiet);
+        let drawn = pool.install(|| draw(prepared.tracer(&settings).as_ref(), &view, &description, &bar));
+        bar.finish_and_clear();
+        let mut agreement = Agreement::default();
+        let allowance = allowance(settings.precision);
+        let directions = (0..view.size[1]).flat_map(|py| row(&view, py)).map(|ray| ray.direction);
+        for ((outcome, truth), direction) in drawn.outcomes.iter().zip(&truths).zip(directions) {
+            agreement.add(outcome, truth, direction, diagonal, &allowance);
+        }
+        let mut stats = Stats::new("teapot".to_owned(), &settings, &prepared, prepare_seconds, &drawn.tally);
+        stats.size = Some(view.size);
+        let ns_per_ray = stats.intersect_seconds / stats.rays.max(1) as f64 * 1e9;
+        let times_oracle = oracle.seconds / stats.intersect_seconds.max(f64::MIN_POSITIVE);
+        runs.push(Run { stats, ns_per_ray, times_oracle, agreement });
+        picture = Some(drawn.picture);
+    }
+    if let Some(picture) = picture {
+        picture.write_png(&mut png).map_err(|reason| png.failed(reason))?;
+    }
+    png.finish()?;
+    let report = Report { schema: SCHEMA, picture: output.display().to_string(), oracle, runs };
+    stats_outputs.finish(&report)?;
+    if let Some(table) = table {
+        let mut out = Output::create(table)?;
+        out.write_all(report.to_text().as_bytes()).map_err(|reason| out.failed(reason))?;
+        out.finish()?;
+    }
+    Ok(())
+}
+
+/// [`PICTURE`], its folder made if it is not there.
+fn default_picture() -> Result<PathBuf, OutputError> {
+    let path = PathBuf::from(PICTURE);
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)
+            .map_err(|reason| OutputError::Failed { path: folder.display().to_string(), reason })?;
+    }
+    Ok(path)
+}
+
+/// The settings of every run: those of the default method and precision come last.
+fn combinations(flags: &Flags, settings: &Settings) -> Vec<Settings> {
+    let mut all = Vec::new();
+    for &precision in Precision::value_variants() {
+        for &method in Method::value_variants() {
+            let wanted =
+                flags.method.is_none_or(|only| only == method) && flags.precision.is_none_or(|only| only == precision);
+            if wanted {
+                all.push(Settings { method, precision, ..*settings });
+            }
+        }
+    }
+    all
+}
+
+fn ask_oracle(oracle: &Oracle, view: &View, quiet: bool) -> (Vec<Truth>, OracleStats) {
+    let bar = progress(u64::from(view.size[1]), "asking the oracle", quiet);
+    let rows: Vec<(Vec<Truth>, f64)> = (0..view.size[1])
+        .into_par_iter()
+        .map(|py| {
+            let begin = Instant::now();
+            let rays = row(view, py);
+            let truth = |ray: &crate::scene::rays::RayLine| {
+                Truth::from(&oracle.trace(ray.origin, ray.direction, ray.t_min, ray.t_max))
+            };
+            let truths = rays.iter().map(truth).collect();
+            bar.inc(1);
+            (truths, begin.elapsed().as_secs_f64())
+        })
+        .collect();
+    bar.finish_and_clear();
+    let seconds = rows.iter().map(|(_, seconds)| seconds).sum();
+    let truths: Vec<Truth> = rows.into_iter().flat_map(|(truths, _)| truths).collect();
+    let stats = OracleStats {
+        rays: truths.len() as u64,
+        hit_rays: truths.iter().filter(|truth| truth.closest.is_some()).count() as u64,
+        roots: truths.iter().map(|truth| truth.roots as u64).sum(),
+        open: truths.iter().filter(|truth| truth.open).count() as u64,
+        seconds,
+    };
+    (truths, stats)
+}
+
+impl Report {
+    fn to_text(&self) -> String {
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let mut line = |args: std::fmt::Arguments| {
+            let _ = writeln!(text, "{args}");
+        };
+        line(format_args!(
+            "{:<16}{:<10}{:>8}{:>9}{:>13}{:>8}{:>7}{:>8}{:>9}{:>10}{:>10}",
+            "method",
+            "precision",
+            "time s",
+            "ns/ray",
+            "intersected",
+            "hits",
+            "wrong",
+            "missed",
+            "phantom",
+            "undecided",
+            "x oracle"
+        ));
+        for Run { stats, ns_per_ray, times_oracle, agreement } in &self.runs {
+            let name = |value: Option<clap::builder::PossibleValue>| {
+                value.map_or(String::new(), |value| value.get_name().to_owned())
+            };
+            let points = stats.work.get("intersection_points").copied().unwrap_or(0);
+            let Agreement { wrong, missed, phantom, undecided, .. } = agreement;
+            line(format_args!(
+                "{:<16}{:<10}{:>8.3}{ns_per_ray:>9.0}{points:>13}{:>8}{wrong:>7}{missed:>8}{phantom:>9}{undecided:>10}\
+                 {times_oracle:>10.0}",
+                name(stats.method.to_possible_value()),
+                name(stats.precision.to_possible_value()),
+                stats.intersect_seconds,
+                stats.hit_rays,
+            ));
+        }
+        let OracleStats { rays, hit_rays, roots, open, seconds } = self.oracle;
+        line(format_args!(
+            "{:<16}{:<10}{seconds:>8.3}{:>9.0}{roots:>13}{hit_rays:>8}{:>7}{:>8}{:>9}{open:>10}{:>10}",
+            "oracle",
+            "f64",
+            seconds / rays.max(1) as f64 * 1e9,
+            "-",
+            "-",
+            "-",
+            1
+        ));
+        line(format_args!(
+            "\n{rays} rays; times are summed over {} threads. Picture: {}",
+            self.runs.first().map_or(0, |run| run.stats.threads),
+            self.picture
+        ));
+        for run in &self.runs {
+            for (limit, count) in &run.stats.gave_up_by_limit {
+                line(format_args!("{count} rays gave up: the limit on {limit} ran out"));
+            }
+        }
+        text
+    }
+}

@@ -1,0 +1,158 @@
+//! The verbs, and how each of them may end.
+
+pub mod demo;
+pub mod info;
+pub mod load;
+pub mod query;
+pub mod render;
+
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use miette::Diagnostic;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::lower::LowerError;
+use crate::output::{Output, OutputError};
+use crate::scene::error::InputError;
+use crate::settings::Flags;
+use crate::stats::{Stats, to_json};
+
+/// Why a command did not do what it was asked to.
+#[derive(Debug, Error, Diagnostic)]
+pub enum Failure {
+    /// The flags do not go together.
+    #[error("{message}")]
+    Usage {
+        /// What is wrong.
+        message: String,
+        /// What to write instead.
+        #[help]
+        help: String,
+    },
+    /// An input file was refused.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Input(#[from] InputError),
+    /// What a file holds cannot be traced.
+    #[error("`{file}` is refused: {reason}")]
+    Refused {
+        /// The file.
+        file: String,
+        /// What in it, and why.
+        reason: String,
+        /// What to do about it.
+        #[help]
+        help: String,
+    },
+    /// The scene could not be built.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Lower(#[from] LowerError),
+    /// An output could not be written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Output(#[from] OutputError),
+    /// Something that should not happen.
+    #[error("internal error: {0}")]
+    Internal(String),
+}
+
+impl Failure {
+    /// The exit code: 2 usage, 3 input refused, 4 capacity, 5 internal or I/O; 0 if whoever read the output went away.
+    pub fn code(&self) -> u8 {
+        match self {
+            Failure::Usage { .. } => 2,
+            Failure::Input(_) | Failure::Refused { .. } => 3,
+            Failure::Lower(LowerError::Surface { .. } | LowerError::Vanishes { .. }) => 3,
+            Failure::Lower(LowerError::Internal(_)) => 5,
+            Failure::Lower(_) => 4,
+            Failure::Output(error) if error.is_broken_pipe() => 0,
+            Failure::Output(_) | Failure::Internal(_) => 5,
+        }
+    }
+}
+
+/// Says something on standard error. That nobody can hear it is no reason to end.
+pub fn say(text: std::fmt::Arguments) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// Refuses flags that send more than one thing to standard output, or two things to one file.
+pub(crate) fn check_outputs(output: Option<&Path>, flags: &Flags) -> Result<(), Failure> {
+    let stdout = Path::new("-");
+    let usage = |message: &str, help: &str| Err(Failure::Usage { message: message.to_owned(), help: help.to_owned() });
+    let to_stdout = [output == Some(stdout), flags.stats.as_deref() == Some(stdout), flags.json];
+    if to_stdout.iter().filter(|&&to| to).count() > 1 {
+        return usage("two outputs would go to standard output", "name a file for one of them, with -o or --stats");
+    }
+    if output.is_some_and(|output| output != stdout && flags.stats.as_deref() == Some(output)) {
+        return usage("-o and --stats name the same file", "name two files");
+    }
+    Ok(())
+}
+
+/// The open outputs for [`Stats`].
+pub(crate) struct StatsOutputs(Vec<Output>);
+
+impl StatsOutputs {
+    /// Opens the outputs that the flags ask for, before any long work.
+    pub(crate) fn create(flags: &Flags) -> Result<Self, OutputError> {
+        let json = flags.json.then_some(Path::new("-"));
+        let paths = flags.stats.as_deref().into_iter().chain(json);
+        Ok(StatsOutputs(paths.map(Output::create).collect::<Result<_, _>>()?))
+    }
+
+    /// Writes the statistics to all of them.
+    pub(crate) fn finish(self, stats: &impl Serialize) -> Result<(), OutputError> {
+        let text = to_json(stats);
+        for mut output in self.0 {
+            output.write_all(text.as_bytes()).map_err(|reason| output.failed(reason))?;
+            output.finish()?;
+        }
+        Ok(())
+    }
+}
+
+/// Threads for one command.
+pub(crate) fn pool(threads: u32) -> Result<ThreadPool, Failure> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads as usize).build();
+    pool.map_err(|error| Failure::Internal(format!("{threads} threads could not be started: {error}")))
+}
+
+/// A progress bar of `length` steps; it shows only on a terminal, and not with `--quiet`.
+pub(crate) fn progress(length: u64, what: &'static str, quiet: bool) -> ProgressBar {
+    if quiet || !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(length).with_message(what);
+    if let Ok(style) = ProgressStyle::with_template("{msg} [{wide_bar}] {percent} % {eta}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+/// The line that sums a run up.
+pub(crate) fn summary(stats: &Stats) -> String {
+    let rays = stats.rays.max(1) as f64;
+    format!(
+        "{} rays, {} hits; prepared in {:.3} s, intersected in {:.3} s ({:.0} ns per ray)",
+        stats.rays,
+        stats.hit_rays,
+        stats.prepare_seconds,
+        stats.intersect_seconds,
+        stats.intersect_seconds / rays * 1e9,
+    )
+}
+
+/// Says how many rays were given up, if any were.
+pub(crate) fn say_gave_up(stats: &Stats) {
+    for (limit, count) in &stats.gave_up_by_limit {
+        say(format_args!("{count} of {} rays gave up: the limit on {limit} ran out", stats.rays));
+    }
+}

@@ -1,0 +1,403 @@
+//! From a model's numbers to kernel surfaces in memory that is owned here.
+//!
+//! The kernel only borrows. [`Lowered`] asks each stage how many slots it needs, allocates that many, has them filled, and
+//! gives views of them again. Only the stages that a method needs are built: see [`Stages::of`].
+
+use miette::Diagnostic;
+use patchray::bernstein::MAX_DEGREE;
+use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
+use patchray::method::Scratch;
+use patchray::method::newton_coherent::Remembered;
+use patchray::patch::{Parallelepiped, Patch};
+use patchray::scalar::Scalar;
+use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions, SurfaceSlot};
+use patchray::subdivide::{PatchMemory, Patches, SubdivideError, SubdivideScratch, Subdivision, TreeMemory, subdivide};
+use patchray::surface::{Net, Plain, Point, Weighted};
+use patchray::tree::Tree;
+use thiserror::Error;
+
+use crate::memory::{Bytes, Kind, Slots};
+use crate::scene::model::{Model, ModelSurface};
+use crate::scene::trace::Method;
+
+/// One more than the highest degree: the capacity of the scratch, so that it serves every valid surface.
+pub const ORDER: usize = MAX_DEGREE + 1;
+
+/// The control points of the largest net.
+pub const NET: usize = ORDER * ORDER;
+
+/// A kernel point that can be made from a file's numbers.
+pub trait FromFile: Point {
+    /// The point `[x, y, z, w]` of a file, rounded to this precision; the weight is not multiplied in.
+    fn from_file(point: [f64; 4]) -> Self;
+}
+
+impl<S: Scalar> FromFile for Plain<S> {
+    fn from_file([x, y, z, _]: [f64; 4]) -> Self {
+        Plain([x, y, z].map(S::from_f64))
+    }
+}
+
+impl<S: Scalar> FromFile for Weighted<S> {
+    fn from_file([x, y, z, w]: [f64; 4]) -> Self {
+        Weighted::new([x, y, z].map(S::from_f64), S::from_f64(w))
+    }
+}
+
+/// Why a model could not be lowered.
+#[derive(Debug, Error, Diagnostic)]
+pub enum LowerError {
+    /// A surface that the number type cannot hold.
+    #[error("surface {number} cannot be traced: {reason}")]
+    #[diagnostic(help("use --precision f64 or other units, or --skip-invalid to leave such surfaces out"))]
+    Surface {
+        /// Its index in the model.
+        index: usize,
+        /// Its number in its file.
+        number: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The model has an extent in the file and none in the number type.
+    #[error("the model shrinks to a point in f32: its diagonal is {diagonal:e}")]
+    #[diagnostic(help("use --precision f64, larger units, or an origin nearer to the model"))]
+    Vanishes {
+        /// The diagonal of its control points, in the file's units.
+        diagonal: f64,
+    },
+    /// A surface makes too many patches.
+    #[error("surface {number} needs more patches than it is given: more than {given}")]
+    #[diagnostic(help("raise --limit patches-per-surface=N, or subdivide less with a larger --flatness"))]
+    Patches {
+        /// Its number in its file.
+        number: usize,
+        /// The most that it may make.
+        given: u32,
+    },
+    /// More memory than the limit `arena-bytes` allows.
+    #[error("the scene needs {needed} bytes of memory and is given {given}: {detail}")]
+    #[diagnostic(help("raise --limit arena-bytes=N, or make fewer patches (--flatness) and voxels (--grid-density)"))]
+    Arena {
+        /// Bytes needed, by all stages so far.
+        needed: u64,
+        /// Bytes allowed.
+        given: u64,
+        /// The bytes by kind.
+        detail: String,
+    },
+    /// The system has not as much memory.
+    #[error("the system does not give the {needed} bytes of memory that the scene's {kind} need")]
+    #[diagnostic(help("make fewer patches (--flatness) and voxels (--grid-density), or use --precision f32"))]
+    System {
+        /// Bytes needed for this kind of slot.
+        needed: u64,
+        /// Which kind of slot.
+        kind: &'static str,
+    },
+    /// More surfaces, points, patches or voxels than the kernel can number.
+    #[error("the scene is too large: {0}")]
+    #[diagnostic(help("make fewer patches (--flatness) and voxels (--grid-density), or split the scene"))]
+    TooLarge(String),
+    /// The kernel contradicted itself; a defect.
+    #[error("building the scene failed: {0}")]
+    Internal(String),
+}
+
+/// Which stages to build beside the scene itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stages {
+    /// The patches.
+    pub patches: bool,
+    /// The binary trees over the patches.
+    pub tree: bool,
+    /// The grids over the patches.
+    pub grids: bool,
+}
+
+impl Stages {
+    /// All there are.
+    pub const ALL: Self = Stages { patches: true, tree: true, grids: true };
+
+    /// Those that a method needs.
+    pub fn of(method: Method) -> Self {
+        match method {
+            Method::Newton => Stages { patches: true, tree: true, grids: false },
+            Method::NewtonCoherent => Stages { patches: true, tree: false, grids: true },
+        }
+    }
+}
+
+/// How to build the stages, in the kernel's terms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preparation<S> {
+    /// How finely surfaces are subdivided.
+    pub subdivision: Subdivision<S>,
+    /// How fine the grids over patches are.
+    pub grid: GridOptions<S>,
+    /// How fine the grid over surfaces is.
+    pub scene: SceneOptions<S>,
+    /// The most bytes that all slots together may take; `u64::MAX` for no bound.
+    pub arena_bytes: u64,
+}
+
+impl<S: Scalar> Default for Preparation<S> {
+    /// The kernel's defaults, and no bound on bytes.
+    fn default() -> Self {
+        Preparation {
+            subdivision: Subdivision::default(),
+            grid: GridOptions::default(),
+            scene: SceneOptions::default(),
+            arena_bytes: u64::MAX,
+        }
+    }
+}
+
+/// A scene in memory of its own: filled slots and the header that goes with them.
+#[derive(Clone, Debug)]
+pub struct Lowered<P: Point> {
+    stages: Stages,
+    header: SceneHeader<P::Scalar>,
+    points: Vec<P>,
+    surfaces: Vec<SurfaceSlot<P::Scalar>>,
+    offsets: Vec<u32>,
+    references: Vec<u32>,
+    patches: Vec<Patch<P::Scalar>>,
+    first: Vec<u32>,
+    nodes: Vec<Parallelepiped<P::Scalar>>,
+    links: Vec<u32>,
+    grids: Vec<GridSlot<P::Scalar>>,
+    grid_offsets: Vec<u32>,
+    grid_references: Vec<u32>,
+}
+
+/// The control points of a surface in the kernel's type, checked.
+fn points_of<P: FromFile>(surface: &ModelSurface) -> Result<Vec<P>, String> {
+    let points: Vec<P> = surface.points.iter().map(|&point| P::from_file(point)).collect();
+    Net::checked(surface.degree_u, surface.degree_v, &points).map_err(|error| error.to_string())?;
+    Ok(points)
+}
+
+/// The index in `model`, and the reason, of each surface that this point type cannot hold: one that is not valid in the
+/// file, or whose numbers overflow, or whose weights vanish, in `f32`.
+pub fn unfit<P: FromFile>(model: &Model) -> Vec<(usize, String)> {
+    let reasons = model.surfaces.iter().map(|surface| points_of::<P>(surface).err());
+    reasons.enumerate().filter_map(|(index, reason)| Some((index, reason?))).collect()
+}
+
+impl<P: FromFile> Lowered<P> {
+    /// Lowers `model`, and builds the stages.
+    ///
+    /// # Errors
+    /// A surface that the number type cannot hold, or more memory than there is or may be used.
+    pub fn build(model: &Model, stages: Stages, preparation: &Preparation<P::Scalar>) -> Result<Self, LowerError> {
+        let numbers = |index: u32| model.surfaces.get(index as usize).map_or(0, |surface| surface.number);
+        let mut nets_points = Vec::new();
+        for (index, surface) in model.surfaces.iter().enumerate() {
+            nets_points.push(points_of::<P>(surface).map_err(|reason| LowerError::Surface {
+                index,
+                number: surface.number,
+                reason,
+            })?);
+        }
+        let mut nets = Vec::new();
+        for (surface, points) in model.surfaces.iter().zip(&nets_points) {
+            let net = Net::new(surface.degree_u, surface.degree_v, points);
+            nets.push(net.map_err(|error| LowerError::Internal(error.to_string()))?);
+        }
+        let mut slots = Slots::new(preparation.arena_bytes);
+        let mut lowered = Self::scene_of(&nets, &preparation.scene, stages, &mut slots)?;
+        let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());
+        if diagonal > 0.0 && !(lowered.scene().frame().diagonal() > P::Scalar::ZERO) {
+            return Err(LowerError::Vanishes { diagonal });
+        }
+        if stages.patches || stages.tree || stages.grids {
+            lowered.subdivide(&preparation.subdivision, numbers, &mut slots)?;
+        }
+        if stages.grids {
+            lowered.grids_of(&preparation.grid, &mut slots)?;
+        }
+        Ok(lowered)
+    }
+
+    fn scene_of(
+        nets: &[Net<'_, P>],
+        options: &SceneOptions<P::Scalar>,
+        stages: Stages,
+        slots: &mut Slots,
+    ) -> Result<Self, LowerError> {
+        let refused = |error: SceneError| match error {
+            SceneError::TooLarge => LowerError::TooLarge(error.to_string()),
+            _ => LowerError::Internal(error.to_string()),
+        };
+        let nothing = SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] };
+        let needs = match Scene::build(nets, options, nothing) {
+            Ok(_) => Default::default(),
+            Err(SceneError::Memory(needs)) => needs,
+            Err(error) => return Err(refused(error)),
+        };
+        slots.ask::<P>(Kind::Points, needs.points);
+        slots.ask::<SurfaceSlot<P::Scalar>>(Kind::Surfaces, needs.surfaces);
+        slots.ask::<u32>(Kind::SceneVoxels, needs.offsets);
+        slots.ask::<u32>(Kind::SceneReferences, needs.references);
+        slots.check()?;
+        let mut points = slots.take(Kind::Points, P::EMPTY, needs.points)?;
+        let mut surfaces = slots.take(Kind::Surfaces, SurfaceSlot::EMPTY, needs.surfaces)?;
+        let mut offsets = slots.take(Kind::SceneVoxels, 0, needs.offsets)?;
+        let mut references = slots.take(Kind::SceneReferences, 0, needs.references)?;
+        let memory = SceneMemory {
+            points: &mut points,
+            surfaces: &mut surfaces,
+            offsets: &mut offsets,
+            references: &mut references,
+        };
+        let header = Scene::build(nets, options, memory).map_err(refused)?.header();
+        Ok(Lowered {
+            stages,
+            header,
+            points,
+            surfaces,
+            offsets,
+            references,
+            patches: Vec::new(),
+            first: Vec::new(),
+            nodes: Vec::new(),
+            links: Vec::new(),
+            grids: Vec::new(),
+            grid_offsets: Vec::new(),
+            grid_references: Vec::new(),
+        })
+    }
+
+    fn subdivide(
+        &mut self,
+        options: &Subdivision<P::Scalar>,
+        number: impl Fn(u32) -> usize,
+        slots: &mut Slots,
+    ) -> Result<(), LowerError> {
+        let given = options.patches_per_surface;
+        let refused = |error: SubdivideError| match error {
+            SubdivideError::Patches { surface } => LowerError::Patches { number: number(surface), given },
+            _ => LowerError::Internal(error.to_string()),
+        };
+        let wants_tree = self.stages.tree;
+        let mut scratch = Box::new(SubdivideScratch::<P, NET>::new());
+        let scene = Scene::new(self.header, &self.points, &self.surfaces, &self.offsets, &self.references);
+        let tree = wants_tree.then_some(TreeMemory { nodes: &mut [], links: &mut [] });
+        let nothing = PatchMemory { patches: &mut [], first: &mut [] };
+        let needs = match subdivide(scene.nets(), scene.frame(), options, &mut scratch.view(), nothing, tree) {
+            Ok(_) => Default::default(),
+            Err(SubdivideError::Memory(needs)) => needs,
+            Err(error) => return Err(refused(error)),
+        };
+        slots.ask::<Patch<P::Scalar>>(Kind::Patches, needs.patches);
+        slots.ask::<u32>(Kind::PatchRanges, needs.first);
+        slots.ask::<Parallelepiped<P::Scalar>>(Kind::TreeNodes, needs.nodes);
+        slots.ask::<u32>(Kind::TreeLinks, needs.links);
+        slots.check()?;
+        self.patches = slots.take(Kind::Patches, Patch::EMPTY, needs.patches)?;
+        self.first = slots.take(Kind::PatchRanges, 0, needs.first)?;
+        self.nodes = slots.take(Kind::TreeNodes, Parallelepiped::EMPTY, needs.nodes)?;
+        self.links = slots.take(Kind::TreeLinks, 0, needs.links)?;
+        let memory = PatchMemory { patches: &mut self.patches, first: &mut self.first };
+        let tree = wants_tree.then_some(TreeMemory { nodes: &mut self.nodes, links: &mut self.links });
+        subdivide(scene.nets(), scene.frame(), options, &mut scratch.view(), memory, tree).map_err(refused)?;
+        Ok(())
+    }
+
+    fn grids_of(&mut self, options: &GridOptions<P::Scalar>, slots: &mut Slots) -> Result<(), LowerError> {
+        let refused = |error: GridError| match error {
+            GridError::TooLarge => LowerError::TooLarge(error.to_string()),
+            _ => LowerError::Internal(error.to_string()),
+        };
+        let surfaces = self.surfaces.len();
+        let patches = Patches::new(&self.patches, &self.first);
+        let nothing = GridMemory { grids: &mut [], offsets: &mut [], references: &mut [] };
+        let needs = match Grids::build(surfaces, &patches, options, nothing) {
+            Ok(_) => Default::default(),
+            Err(GridError::Memory(needs)) => needs,
+            Err(error) => return Err(refused(error)),
+        };
+        slots.ask::<GridSlot<P::Scalar>>(Kind::Grids, needs.grids);
+        slots.ask::<u32>(Kind::GridVoxels, needs.offsets);
+        slots.ask::<u32>(Kind::GridReferences, needs.references);
+        slots.check()?;
+        self.grids = slots.take(Kind::Grids, GridSlot::EMPTY, needs.grids)?;
+        self.grid_offsets = slots.take(Kind::GridVoxels, 0, needs.offsets)?;
+        self.grid_references = slots.take(Kind::GridReferences, 0, needs.references)?;
+        let memory = GridMemory {
+            grids: &mut self.grids,
+            offsets: &mut self.grid_offsets,
+            references: &mut self.grid_references,
+        };
+        Grids::build(surfaces, &patches, options, memory).map_err(refused)?;
+        Ok(())
+    }
+}
+
+impl<P: Point> Lowered<P> {
+    /// The scene.
+    pub fn scene(&self) -> Scene<'_, P> {
+        Scene::new(self.header, &self.points, &self.surfaces, &self.offsets, &self.references)
+    }
+
+    /// The patches; of no surface if they were not built.
+    pub fn patches(&self) -> Patches<'_, P::Scalar> {
+        Patches::new(&self.patches, &self.first)
+    }
+
+    /// The binary trees; empty if they were not built.
+    pub fn tree(&self) -> Tree<'_, P::Scalar> {
+        Tree::new(&self.nodes, &self.links)
+    }
+
+    /// The grids; empty if they were not built.
+    pub fn grids(&self) -> Grids<'_, P::Scalar> {
+        Grids::new(&self.grids, &self.grid_offsets, &self.grid_references)
+    }
+
+    /// What was built.
+    pub fn stages(&self) -> Stages {
+        self.stages
+    }
+
+    /// The slots that `stages` take of what was built, by kind: exact, `size_of` times slots.
+    pub fn bytes(&self, stages: Stages) -> Bytes {
+        let mut bytes = Bytes::default();
+        bytes.add::<P>(Kind::Points, self.points.len());
+        bytes.add::<SurfaceSlot<P::Scalar>>(Kind::Surfaces, self.surfaces.len());
+        bytes.add::<u32>(Kind::SceneVoxels, self.offsets.len());
+        bytes.add::<u32>(Kind::SceneReferences, self.references.len());
+        if stages.patches || stages.tree || stages.grids {
+            bytes.add::<Patch<P::Scalar>>(Kind::Patches, self.patches.len());
+            bytes.add::<u32>(Kind::PatchRanges, self.first.len());
+        }
+        if stages.tree {
+            bytes.add::<Parallelepiped<P::Scalar>>(Kind::TreeNodes, self.nodes.len());
+            bytes.add::<u32>(Kind::TreeLinks, self.links.len());
+        }
+        if stages.grids {
+            bytes.add::<GridSlot<P::Scalar>>(Kind::Grids, self.grids.len());
+            bytes.add::<u32>(Kind::GridVoxels, self.grid_offsets.len());
+            bytes.add::<u32>(Kind::GridReferences, self.grid_references.len());
+        }
+        bytes
+    }
+
+    /// Bytes of coherence memory for one thread, where a method has any.
+    pub fn coherence_bytes(&self) -> u64 {
+        (self.surfaces.len() * size_of::<Remembered<P::Scalar>>()) as u64
+    }
+
+    /// Bytes of scratch for one thread.
+    pub fn scratch_bytes(&self) -> u64 {
+        size_of::<Scratch<P, ORDER, NET>>() as u64
+    }
+
+    /// Bytes of scratch that subdivision takes while the scene is built.
+    pub fn preparation_bytes(&self) -> u64 {
+        size_of::<SubdivideScratch<P, NET>>() as u64
+    }
+}
+
+#[cfg(test)]
+mod tests;

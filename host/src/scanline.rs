@@ -1,0 +1,378 @@
+//! Drives rays along scan lines.
+//!
+//! A [`Lane`] is what one thread needs: scratch, and coherence memory that starts every scan line empty. Answers and
+//! counters therefore depend on the lines alone, not on which thread traced them. The type hides point type, precision and
+//! method behind one call per line; within a line all is monomorphic.
+
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use patchray::bernstein::Basis;
+use patchray::limits::{Limits, Work};
+use patchray::method::Scratch;
+use patchray::method::newton_coherent::Remembered;
+use patchray::ray::{Hit, Interval, RayError};
+use patchray::scalar::Scalar as _;
+use rayon::prelude::*;
+
+use crate::lower::{NET, ORDER};
+use crate::method::{Answer, Method, Scalar};
+use crate::scene::rays::RayLine;
+
+/// A hit in `f64`, whatever it was computed in; exact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Parameter along the ray, in units of its direction.
+    pub t: f64,
+    /// Surface parameter, in [0, 1].
+    pub u: f64,
+    /// Surface parameter, in [0, 1].
+    pub v: f64,
+    /// The surface's index in the model.
+    pub surface: usize,
+    /// The unit normal along ∂S/∂u × ∂S/∂v; `None` where there is none.
+    pub normal: Option<[f64; 3]>,
+    /// Whether the ray is tangent there to working precision.
+    pub grazing: bool,
+}
+
+/// What became of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// The closest hit.
+    Hit(Found),
+    /// No hit.
+    Miss,
+    /// Out of a budget.
+    GaveUp {
+        /// The name of the budget.
+        limit: &'static str,
+        /// The closest hit so far, which is not an answer.
+        best: Option<Found>,
+    },
+    /// The kernel refuses such a ray in this scene.
+    Refused(RayError),
+    /// The ray was marked as not valid, and was not traced.
+    Invalid,
+}
+
+/// Sums over rays.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Rays, whatever became of them.
+    pub rays: u64,
+    /// Rays that hit.
+    pub hits: u64,
+    /// Rays that were refused, or were not valid.
+    pub invalid: u64,
+    /// Rays given up, by the name of the limit that ran out.
+    pub gave_up: BTreeMap<&'static str, u64>,
+    /// The kernel's counters, in the order of [`Work::NAMES`].
+    pub work: [u64; Work::COUNT],
+    /// Seconds for making rays and finding their closest hits, summed over threads. Measured around whole lines; the
+    /// conversion of numbers and the normals are outside.
+    pub seconds: f64,
+}
+
+impl Tally {
+    /// Adds what another part of the work came to.
+    pub fn add(&mut self, other: &Tally) {
+        self.rays += other.rays;
+        self.hits += other.hits;
+        self.invalid += other.invalid;
+        for (limit, count) in &other.gave_up {
+            *self.gave_up.entry(limit).or_default() += count;
+        }
+        for (sum, part) in self.work.iter_mut().zip(other.work) {
+            *sum += part;
+        }
+        self.seconds += other.seconds;
+    }
+
+    /// Rays given up.
+    pub fn gave_up_in_all(&self) -> u64 {
+        self.gave_up.values().sum()
+    }
+
+    /// A counter of [`Work`] by name; 0 for a name that it has not.
+    pub fn count(&self, name: &str) -> u64 {
+        Work::NAMES.iter().zip(self.work).find_map(|(&known, count)| (known == name).then_some(count)).unwrap_or(0)
+    }
+}
+
+/// What one thread needs to trace lines with one method.
+pub trait Lane: Send {
+    /// Traces `rays` one after another, as the beginning of a scan line, or as its continuation if `continues`. Outcomes are
+    /// appended, one per ray; sums are added to `tally`.
+    fn trace(&mut self, rays: &[RayLine], continues: bool, outcomes: &mut Vec<Outcome>, tally: &mut Tally);
+}
+
+/// A scene ready to be traced with one method.
+pub trait Tracer: Send + Sync {
+    /// A lane over it. Lanes of one tracer are alike.
+    fn lane(&self) -> Box<dyn Lane + '_>;
+
+    /// Whether a scan line has to stay with one lane.
+    fn is_coherent(&self) -> bool;
+
+    /// Why the kernel would refuse a ray, if it would.
+    fn refusal(&self, ray: &RayLine) -> Option<RayError>;
+}
+
+/// The tracer of a method.
+#[derive(Clone, Copy, Debug)]
+pub struct MethodTracer<M: Method> {
+    method: M,
+    limits: Limits<Scalar<M>>,
+}
+
+impl<M: Method> MethodTracer<M> {
+    /// The tracer of `method`, such as `Newton::over(&lowered)`, under `limits`.
+    pub fn new(method: M, limits: Limits<Scalar<M>>) -> Self {
+        MethodTracer { method, limits }
+    }
+}
+
+impl<M: Method> Tracer for MethodTracer<M> {
+    fn lane(&self) -> Box<dyn Lane + '_> {
+        let slots = if M::COHERENT { self.method.scene().len() } else { 0 };
+        Box::new(MethodLane {
+            tracer: self,
+            scratch: Scratch::new(),
+            basis: Basis::new(),
+            memory: vec![Remembered::EMPTY; slots],
+            line: 0,
+            ready: Vec::new(),
+            found: Vec::new(),
+        })
+    }
+
+    fn is_coherent(&self) -> bool {
+        M::COHERENT
+    }
+
+    fn refusal(&self, ray: &RayLine) -> Option<RayError> {
+        let [origin, direction] = [ray.origin, ray.direction].map(|vector| vector.map(Scalar::<M>::from_f64));
+        self.method.scene().ray(origin, direction).err()
+    }
+}
+
+/// A ray in the method's precision; `None` where it is not to be traced.
+type Ready<S> = Option<([S; 3], [S; 3], Interval<S>)>;
+
+struct MethodLane<'t, M: Method> {
+    tracer: &'t MethodTracer<M>,
+    scratch: Scratch<M::Point, ORDER, NET>,
+    basis: Basis<Scalar<M>, ORDER>,
+    memory: Vec<Remembered<Scalar<M>>>,
+    /// The number of the scan line. It stamps the memory of this lane, and no other's.
+    line: u32,
+    ready: Vec<Ready<Scalar<M>>>,
+    found: Vec<Option<Result<Answer<Scalar<M>>, RayError>>>,
+}
+
+impl<M: Method> Lane for MethodLane<'_, M> {
+    fn trace(&mut self, rays: &[RayLine], continues: bool, outcomes: &mut Vec<Outcome>, tally: &mut Tally) {
+        if !continues {
+            self.begin_line();
+        }
+        self.ready.clear();
+        self.ready.extend(rays.iter().map(ready));
+        self.found.clear();
+        self.found.reserve(rays.len());
+
+        let MethodTracer { method, limits } = self.tracer;
+        let scene = method.scene();
+        let mut scratch = self.scratch.view();
+        // A ray's counters are summed after the next ray: read at once, they would wait for the kernel's last stores.
+        let (mut work, mut previous) = (Work::default(), Work::default());
+        let mut sums = [0_u64; Work::COUNT];
+        let mut sum = |work: &Work| {
+            for (sum, count) in sums.iter_mut().zip(work.counts()) {
+                *sum += u64::from(count);
+            }
+        };
+        let begin = Instant::now();
+        for ready in &self.ready {
+            let Some((origin, direction, interval)) = ready else {
+                self.found.push(None);
+                continue;
+            };
+            let answer = scene.ray(*origin, *direction).map(|ray| {
+                let memory = &mut self.memory;
+                let answer = method.closest(memory, self.line, &ray, interval, limits, &mut scratch, &mut work);
+                sum(&previous);
+                std::mem::swap(&mut work, &mut previous);
+                answer
+            });
+            self.found.push(Some(answer));
+        }
+        sum(&previous);
+        tally.seconds += begin.elapsed().as_secs_f64();
+
+        tally.rays += rays.len() as u64;
+        for (sum, part) in tally.work.iter_mut().zip(sums) {
+            *sum += part;
+        }
+        for place in 0..self.found.len() {
+            let outcome = self.outcome(self.found[place]);
+            match &outcome {
+                Outcome::Hit(_) => tally.hits += 1,
+                Outcome::Miss => {}
+                Outcome::GaveUp { limit, .. } => *tally.gave_up.entry(limit).or_default() += 1,
+                Outcome::Refused(_) | Outcome::Invalid => tally.invalid += 1,
+            }
+            outcomes.push(outcome);
+        }
+    }
+}
+
+impl<M: Method> MethodLane<'_, M> {
+    fn begin_line(&mut self) {
+        // The method allows numbers up to 2^32 - 2; before they run out, the memory is emptied and they start again.
+        if self.line >= u32::MAX - 2 {
+            self.memory.fill(Remembered::EMPTY);
+            self.line = 0;
+        }
+        self.line += 1;
+    }
+
+    fn outcome(&mut self, answer: Option<Result<Answer<Scalar<M>>, RayError>>) -> Outcome {
+        match answer {
+            None => Outcome::Invalid,
+            Some(Err(error)) => Outcome::Refused(error),
+            Some(Ok(Ok(None))) => Outcome::Miss,
+            Some(Ok(Ok(Some(hit)))) => Outcome::Hit(self.found(&hit)),
+            Some(Ok(Err(gave_up))) => {
+                Outcome::GaveUp { limit: gave_up.limit.name(), best: gave_up.best.map(|hit| self.found(&hit)) }
+            }
+        }
+    }
+
+    fn found(&mut self, hit: &Hit<Scalar<M>>) -> Found {
+        let normal = self.tracer.method.scene().normal(hit, &mut self.basis.view());
+        // A surface without a normal there has the zero vector. The basis is large enough for every degree.
+        let normal = normal.ok().map(|normal| normal.map(|c| c.to_f64())).filter(|normal| *normal != [0.0; 3]);
+        Found {
+            t: hit.t.to_f64(),
+            u: hit.u.to_f64(),
+            v: hit.v.to_f64(),
+            surface: hit.surface as usize,
+            normal,
+            grazing: hit.grazing,
+        }
+    }
+}
+
+/// The ray in the method's precision. Rounding keeps the order of `t_min` and `t_max`.
+fn ready<S: patchray::scalar::Scalar>(ray: &RayLine) -> Ready<S> {
+    let [origin, direction] = [ray.origin, ray.direction].map(|vector| vector.map(S::from_f64));
+    let interval = Interval::new(S::from_f64(ray.t_min), S::from_f64(ray.t_max));
+    interval.filter(|_| ray.valid).map(|interval| (origin, direction, interval))
+}
+
+/// Lanes that threads borrow: as many are made as are in use at once.
+pub struct Lanes<'t> {
+    tracer: &'t dyn Tracer,
+    idle: Mutex<Vec<Box<dyn Lane + 't>>>,
+}
+
+impl<'t> Lanes<'t> {
+    /// No lanes yet.
+    pub fn new(tracer: &'t dyn Tracer) -> Self {
+        Lanes { tracer, idle: Mutex::new(Vec::new()) }
+    }
+
+    /// Runs `work` with a lane.
+    pub fn with<R>(&self, work: impl FnOnce(&mut dyn Lane) -> R) -> R {
+        let mut lane = self.take();
+        let result = work(lane.as_mut());
+        self.give(lane);
+        result
+    }
+
+    fn take(&self) -> Box<dyn Lane + 't> {
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        idle.unwrap_or_else(|| self.tracer.lane())
+    }
+
+    fn give(&self, lane: Box<dyn Lane + 't>) {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(lane);
+    }
+}
+
+/// How many rays of a long line one job takes, where the order of rays does not matter. Fewer spread better over threads;
+/// more ask for the clock less often.
+const SHARE: usize = 1024;
+
+/// Traces a long row of rays block by block. A scan line is a run of rays with one number; it may go on from block to block.
+pub struct Batch<'t> {
+    lanes: Lanes<'t>,
+    /// The lane of the line that the last block ended with, and the number of that line.
+    open: Option<(Box<dyn Lane + 't>, u64)>,
+    tally: Tally,
+}
+
+impl<'t> Batch<'t> {
+    /// Nothing traced yet.
+    pub fn new(tracer: &'t dyn Tracer) -> Self {
+        Batch { lanes: Lanes::new(tracer), open: None, tally: Tally::default() }
+    }
+
+    /// What was done so far.
+    pub fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    /// Traces the next rays, on rayon's current threads; an outcome per ray, in order. How rays are cut into blocks changes
+    /// neither outcomes nor counters.
+    pub fn trace(&mut self, rays: &[RayLine]) -> Vec<Outcome> {
+        let coherent = self.lanes.tracer.is_coherent();
+        let lines = rays.chunk_by(|a, b| a.scan_line == b.scan_line);
+        let jobs: Vec<&[RayLine]> =
+            if coherent { lines.collect() } else { lines.flat_map(|line| line.chunks(SHARE)).collect() };
+        let (Some(first), Some(last)) = (rays.first(), rays.last()) else {
+            return Vec::new();
+        };
+        let open = self.open.take().and_then(|(lane, line)| {
+            if coherent && line == first.scan_line {
+                return Some(lane);
+            }
+            self.lanes.give(lane);
+            None
+        });
+        let open = Mutex::new(open);
+        let still_open = Mutex::new(None);
+        let lanes = &self.lanes;
+        let done: Vec<(Vec<Outcome>, Tally)> = jobs
+            .par_iter()
+            .enumerate()
+            .map(|(number, line)| {
+                let carried =
+                    if number == 0 { open.lock().unwrap_or_else(PoisonError::into_inner).take() } else { None };
+                let continues = carried.is_some();
+                let mut lane = carried.unwrap_or_else(|| lanes.take());
+                let (mut outcomes, mut tally) = (Vec::with_capacity(line.len()), Tally::default());
+                lane.trace(line, continues, &mut outcomes, &mut tally);
+                if number + 1 == jobs.len() {
+                    *still_open.lock().unwrap_or_else(PoisonError::into_inner) = Some(lane);
+                } else {
+                    lanes.give(lane);
+                }
+                (outcomes, tally)
+            })
+            .collect();
+        let still_open = still_open.into_inner().unwrap_or_else(PoisonError::into_inner);
+        self.open = still_open.map(|lane| (lane, last.scan_line));
+        let mut outcomes = Vec::with_capacity(rays.len());
+        for (part, tally) in done {
+            outcomes.extend(part);
+            self.tally.add(&tally);
+        }
+        outcomes
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,112 @@
+use super::*;
+use crate::lower::Stages;
+use crate::prepared::Prepared;
+use crate::scene::shapes::{Random, sphere};
+use crate::scene::teapot;
+use crate::scene::trace::{Method as Which, Precision};
+use crate::settings::Settings;
+
+/// Rays towards the teapot, some past it, in lines of uneven length.
+fn rays(count: usize) -> Vec<RayLine> {
+    let mut random = Random(5);
+    let ray = |k: usize| {
+        let along = k as f64 / count as f64;
+        let target = [random.within(-0.02, 0.02) + 6.0 * along - 3.0, random.within(-0.02, 0.02), 1.2 + along];
+        let origin = [1.0, -9.0, 4.0];
+        RayLine {
+            origin,
+            direction: [0, 1, 2].map(|axis| target[axis] - origin[axis]),
+            t_min: 0.0,
+            t_max: f64::INFINITY,
+            scan_line: ((k / 7) % 5 + k / 100) as u64,
+            valid: k % 50 != 3,
+        }
+    };
+    (0..count).map(ray).collect()
+}
+
+fn traced(settings: &Settings, rays: &[RayLine], block: usize) -> (Vec<Outcome>, Tally) {
+    let model = teapot::model().expect("the fixture is valid");
+    let prepared = Prepared::build(&model, Stages::of(settings.method), settings).expect("there is memory");
+    let tracer = prepared.tracer(settings);
+    let mut batch = Batch::new(tracer.as_ref());
+    let outcomes = rays.chunks(block).flat_map(|block| batch.trace(block)).collect();
+    let mut tally = batch.tally().clone();
+    tally.seconds = 0.0;
+    (outcomes, tally)
+}
+
+#[test]
+fn blocks_and_threads_change_nothing() {
+    let rays = rays(600);
+    for method in [Which::Newton, Which::NewtonCoherent] {
+        for precision in [Precision::F32, Precision::F64] {
+            let settings = Settings { method, precision, flatness: 0.005, ..Settings::default() };
+            let whole = traced(&settings, &rays, rays.len());
+            assert!(whole.1.hits > 300 && whole.1.invalid == 12, "{:?}", whole.1);
+            for block in [1, 64] {
+                assert_eq!(traced(&settings, &rays, block), whole, "{method:?} {precision:?} {block}");
+            }
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("three threads");
+            assert_eq!(pool.install(|| traced(&settings, &rays, 100)), whole);
+        }
+    }
+}
+
+#[test]
+fn coherence_stays_within_a_line() {
+    let mut rays = rays(200);
+    let settings = Settings { flatness: 0.005, ..Settings::default() };
+    rays.iter_mut().for_each(|ray| ray.scan_line = 7);
+    let (one_line, tally) = traced(&settings, &rays, 50);
+    assert!(tally.count("verified") + tally.count("decided_by_list") > 50);
+    (0..).zip(&mut rays).for_each(|(number, ray)| ray.scan_line = number);
+    let (no_coherence, tally) = traced(&settings, &rays, 50);
+    assert_eq!(tally.count("verified") + tally.count("decided_by_list"), 0);
+    for (a, b) in one_line.iter().zip(&no_coherence) {
+        assert_eq!(matches!(a, Outcome::Hit(_)), matches!(b, Outcome::Hit(_)));
+    }
+}
+
+#[test]
+fn line_numbers_start_again_before_they_run_out() {
+    let model = sphere([0.0; 3], 1.0);
+    let settings = Settings::default();
+    let prepared = Prepared::build(&model, Stages::of(settings.method), &settings).expect("there is memory");
+    let Prepared::WeightedF64(lowered) = &prepared else { panic!("a sphere is rational") };
+    let tracer = MethodTracer::new(crate::method::NewtonCoherent::over(lowered), settings.limits());
+    let mut lane = MethodLane {
+        tracer: &tracer,
+        scratch: Scratch::new(),
+        basis: Basis::new(),
+        memory: vec![Remembered::EMPTY; 8],
+        line: u32::MAX - 4,
+        ready: Vec::new(),
+        found: Vec::new(),
+    };
+    let ray = RayLine {
+        origin: [0.1, 0.2, 5.0],
+        direction: [0.0, 0.0, -1.0],
+        t_min: 0.0,
+        t_max: f64::INFINITY,
+        scan_line: 0,
+        valid: true,
+    };
+    let (mut outcomes, mut tally) = (Vec::new(), Tally::default());
+    for _ in 0..6 {
+        lane.trace(&[ray], false, &mut outcomes, &mut tally);
+        assert!(lane.line < u32::MAX - 1);
+    }
+    assert_eq!((tally.hits, tally.count("start_failed"), tally.count("verified")), (6, 0, 0));
+    assert!(outcomes.iter().all(|outcome| *outcome == outcomes[0]));
+}
+
+#[test]
+fn a_ray_that_the_precision_cannot_hold_is_refused() {
+    let settings = Settings { precision: Precision::F32, flatness: 0.01, ..Settings::default() };
+    let mut ray = rays(1)[0];
+    ray.direction = [1e-60, 0.0, 0.0];
+    let (outcomes, tally) = traced(&settings, &[ray], 1);
+    assert_eq!(outcomes, [Outcome::Refused(RayError::ZeroDirection)]);
+    assert_eq!(tally.invalid, 1);
+}

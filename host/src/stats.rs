@@ -1,0 +1,113 @@
+//! What a run did, as JSON: the file that `--stats` writes and `--json` prints.
+
+use std::collections::BTreeMap;
+
+use patchray::limits::Work;
+use serde::Serialize;
+
+use crate::lower::Stages;
+use crate::memory::Bytes;
+use crate::prepared::Prepared;
+use crate::scanline::Tally;
+use crate::scene::trace::{Method, Precision};
+use crate::settings::Settings;
+
+/// The number of this format; it changes when a field changes its meaning or goes away, not when one is added.
+pub const SCHEMA: u32 = 1;
+
+/// What a run did. Counters are sums over all rays and do not depend on the number of threads.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Stats {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// The kernel's version.
+    pub version: &'static str,
+    /// The scene file or patch file as given.
+    pub scene: String,
+    /// The ray file as given, for a batch of rays.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ray_file: Option<String>,
+    /// Width and height, for a picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size: Option<[u32; 2]>,
+    /// The method.
+    pub method: Method,
+    /// The precision.
+    pub precision: Precision,
+    /// The number of threads.
+    pub threads: u32,
+    /// All that was in effect: method and parameters, and `limits` by name.
+    pub settings: Settings,
+    /// Surfaces in the scene.
+    pub surfaces: u64,
+    /// Patches of all surfaces.
+    pub patches: u64,
+    /// Rays, those that are not valid included.
+    pub rays: u64,
+    /// Rays that hit.
+    pub hit_rays: u64,
+    /// Rays given up because a limit ran out.
+    pub gave_up: u64,
+    /// The same by the limit's name.
+    pub gave_up_by_limit: BTreeMap<&'static str, u64>,
+    /// Rays that are not valid.
+    pub invalid_rays: u64,
+    /// The kernel's counters by name (see [`Work`]), and 0 for those of methods that are not in use: `clip_steps`,
+    /// `bisections`.
+    #[serde(flatten)]
+    pub work: BTreeMap<&'static str, u64>,
+    /// Wall-clock seconds from the model to the scene ready to trace.
+    pub prepare_seconds: f64,
+    /// Seconds for making rays and finding their closest hits, summed over threads.
+    pub intersect_seconds: f64,
+    /// Bytes lent to the kernel for the scene, all threads sharing them.
+    pub arena_bytes: u64,
+    /// The same by kind of slot.
+    pub arena_bytes_by_kind: Bytes,
+    /// Bytes of coherence memory, for each thread.
+    pub coherence_bytes_per_thread: u64,
+    /// Bytes of scratch, for each thread.
+    pub scratch_bytes_per_thread: u64,
+}
+
+impl Stats {
+    /// The statistics of tracing `prepared` under `settings`, with `tally` the sums over rays.
+    pub fn new(scene: String, settings: &Settings, prepared: &Prepared, prepare_seconds: f64, tally: &Tally) -> Self {
+        let bytes = prepared.bytes(Stages::of(settings.method));
+        let mut work = BTreeMap::from([("clip_steps", 0), ("bisections", 0)]);
+        work.extend(Work::NAMES.into_iter().zip(tally.work));
+        Stats {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            scene,
+            ray_file: None,
+            size: None,
+            method: settings.method,
+            precision: settings.precision,
+            threads: settings.threads,
+            settings: *settings,
+            surfaces: prepared.surfaces(),
+            patches: prepared.patches(),
+            rays: tally.rays,
+            hit_rays: tally.hits,
+            gave_up: tally.gave_up_in_all(),
+            gave_up_by_limit: tally.gave_up.clone(),
+            invalid_rays: tally.invalid,
+            work,
+            prepare_seconds,
+            intersect_seconds: tally.seconds,
+            arena_bytes: bytes.total(),
+            arena_bytes_by_kind: bytes,
+            coherence_bytes_per_thread: prepared.coherence_bytes(settings.method),
+            scratch_bytes_per_thread: prepared.scratch_bytes(),
+        }
+    }
+}
+
+/// Indented JSON with an end of line. Numbers that are not finite become `null`.
+pub fn to_json(value: &impl Serialize) -> String {
+    // Only maps with keys that are no text can fail, and there are none.
+    let mut text = serde_json::to_string_pretty(value).unwrap_or_default();
+    text.push('\n');
+    text
+}

@@ -1,0 +1,160 @@
+//! Bad flags, bad files, too little room, outputs that cannot be written: one message with the place, an exit code, and no
+//! file left behind.
+
+use patchray_host::scene::teapot;
+
+use super::{Folder, SCENE, TEAPOT, printed, said};
+
+#[test]
+fn usage_errors_end_with_2() {
+    let folder = Folder::new();
+    for (words, parts) in [
+        ("fly", &["fly"][..]),
+        ("render", &["SCENE"]),
+        ("render scene.toml", &["-o OUT.png"]),
+        ("render scene.toml -o a.png --method ray", &["newton-coherent"]),
+        ("render scene.toml -o a.png --size 0x5", &["640x480"]),
+        ("render scene.toml -o a.png --newton-starts 4", &["newton-starts", "1..=3"]),
+        ("render scene.toml -o a.png --newton-starts 0", &["newton-starts"]),
+        ("render scene.toml -o a.png --newton-iterations 0", &["newton-iterations"]),
+        ("render scene.toml -o a.png --flatness NaN", &["flatness", "above 0"]),
+        ("render scene.toml -o a.png --flatness -1", &["flatness", "above 0"]),
+        ("render scene.toml -o a.png --grid-density inf", &["grid-density", "finite"]),
+        ("render scene.toml -o a.png --threads 0", &["threads"]),
+        ("render scene.toml -o a.png --limit voxel=5", &["did you mean `voxels`?"]),
+        ("render scene.toml -o a.png --limit voxels=x", &["whole number"]),
+        ("render scene.toml -o - --json", &["standard output"]),
+        ("render scene.toml -o a.png --stats a.png", &["same file"]),
+        ("query teapot.bpt rays.csv --json", &["standard output"]),
+        ("query - -", &["standard input"]),
+        ("query teapot.bpt rays.csv --size 3x3", &["--size"]),
+        ("info teapot.bpt --stats s.json", &["--json"]),
+    ] {
+        folder.fails(words, 2, parts);
+    }
+}
+
+#[test]
+fn bad_scene_files_end_with_3() {
+    let folder = Folder::new();
+    folder.fails("render no.toml -o a.png", 3, &["cannot read `no.toml`"]);
+    for (text, parts) in [
+        ("".to_owned(), &["bad.toml:1:1", "no surfaces"][..]),
+        (SCENE[..SCENE.len() / 2].to_owned(), &["bad.toml:"]),
+        (SCENE.replace("fov = 35", "fov = wide"), &["bad.toml:7:7"]),
+        (SCENE.replace("teapot.bpt", "kettle.bpt"), &["bad.toml:1:", "kettle.bpt", "folder of the scene file"]),
+        (SCENE.replace("flatness = 0.002", "newton_starts = 4"), &["bad.toml:9:17", "1 to 3"]),
+        (SCENE.replace("flatness = 0.002", "flatness = nan"), &["bad.toml:9:12"]),
+        (format!("{SCENE}[trace.limits]\nvoxel = 5\n"), &["bad.toml:11:1", "did you mean `voxels`?"]),
+        (format!("{SCENE}[trace.limits]\nvoxels = 5000000000\n"), &["bad.toml:11:1", "4294967295"]),
+        (SCENE.replace("9.3203125", "9e300"), &["bad.toml", "pixel (0, 0)"]),
+    ] {
+        folder.put("bad.toml", &text);
+        folder.fails("render bad.toml -o a.png --stats s.json --precision f32", 3, parts);
+    }
+}
+
+#[test]
+fn bad_patch_files_end_with_3() {
+    let folder = Folder::new();
+    let square = "0 0 0\n0 1 0\n1 0 0\n1 1 0\n";
+    folder.fails("query no.bpt rays.csv -o a.csv", 3, &["cannot read `no.bpt`"]);
+    for (text, parts) in [
+        ("".to_owned(), &["bad.bpt:1:1", "empty"][..]),
+        (teapot::PATCHES[..3000].to_owned(), &["bad.bpt:195:1", "promises"]),
+        (teapot::PATCHES[..2900].to_owned(), &["bad.bpt:", "cut off"]),
+        (format!("1\n1 1\n{}", square.replacen("1 0 0", "1 zero 0", 1)), &["bad.bpt:5:3", "not a number"]),
+        (format!("1\n0 1\n{square}"), &["bad.bpt:2:1", "degree 0"]),
+        (format!("1\n1 16\n{}", "0 0 0\n".repeat(34)), &["bad.bpt:2:3", "degree 16"]),
+        (format!("1\n1 2\n{square}"), &["bad.bpt:6:", "cut off"]),
+        (format!("1\n1 1\n{square}2 2 2\n"), &["bad.bpt:7:1", "more points"]),
+        (format!("1\n1 1\n{}", square.replacen("0 1 0", "NaN 1 0", 1)), &["bad.bpt:4:1", "NaN"]),
+        (format!("1\n1 1\n{}", square.replacen("0 1 0", "0 inf 0", 1)), &["bad.bpt:4:3", "infinite"]),
+        ("1\n1 1\n0 0 0 1\n0 1 0 0\n1 0 0 1\n1 1 0 1\n".to_owned(), &["bad.bpt:4:7", "not above 0"]),
+        (format!("1\n1 1\n{}", square.replacen("0 1 0", "0 1e39 0", 1)), &["bad.bpt", "surface 0", "f32"]),
+        (format!("1\n1 1\n{}", square.replace('1', "1e-60")), &["shrinks to a point"]),
+    ] {
+        folder.put("bad.bpt", &text);
+        folder.fails("query bad.bpt rays.csv -o a.csv --stats s.json --precision f32", 3, parts);
+        // An empty or cut file is not asked whether f32 can hold it.
+        if !text.contains("1e") {
+            folder.fails("info bad.bpt -o a.json --json", 3, &parts[..1]);
+        }
+    }
+}
+
+#[test]
+fn bad_ray_files_end_with_3() {
+    let folder = Folder::new();
+    let header = "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n";
+    folder.fails("query teapot.bpt no.csv -o a.csv", 3, &["cannot read `no.csv`"]);
+    for (text, parts) in [
+        ("".to_owned(), &["bad.csv:1:1", "empty"][..]),
+        ("ox,oy,oz,dx,dy\n".to_owned(), &["bad.csv:1:1", "`dz` is missing"]),
+        (format!("{header}1,2,3\n"), &["bad.csv:3:1", "3 fields"]),
+        (format!("{header}1,2,x,0,0,1\n"), &["bad.csv:3:5", "not a number"]),
+        (format!("{header}1,2,NaN,0,0,1\n"), &["bad.csv:3:5", "NaN"]),
+        (format!("{header}1,2,3,0,0,inf\n"), &["bad.csv:3:11", "infinite"]),
+        (format!("{header}1,2,3,0,0,0\n"), &["bad.csv:3:1", "direction is zero"]),
+        (format!("{header}1,2,3,0,0,1e39\n"), &["bad.csv:3:1", "cannot be traced", "infinite"]),
+        (format!("{header}1,2,3,0,0,1e-44\n"), &["bad.csv:3:1", "cannot be traced"]),
+    ] {
+        folder.put("bad.csv", &text);
+        folder.fails("query teapot.bpt bad.csv -o a.csv --stats s.json --precision f32 --flatness 0.01", 3, parts);
+    }
+}
+
+#[test]
+fn what_is_invalid_can_be_left_out() {
+    let folder = Folder::new();
+    let square = |z: &str| format!("1 1\n0 0 {z}\n0 1 {z}\n1 0 {z}\n1 1 {z}\n");
+    folder.put("three.bpt", format!("3\n{}{}{}", square("NaN"), square("1e39"), square("1")));
+    folder.put(
+        "rays.csv",
+        "ox,oy,oz,dx,dy,dz\n0.5,0.25,9,0,0,-1\n0.5,0.25,9,0,0,0\n0.5,0.25,9,0,0,1e39\n0.5,0.25,9,0,0,-2\n",
+    );
+    let output = folder.done("query three.bpt rays.csv --precision f32 --skip-invalid");
+    let told = said(&output);
+    for part in ["surface 0 left out (three.bpt:3:5)", "surface 1 left out (three.bpt)", "2 of 4 rays", "rays.csv:3:1"]
+    {
+        assert!(told.contains(part), "`{part}` is not in\n{told}");
+    }
+    let answers = printed(&output);
+    let lines: Vec<_> = answers.lines().skip(1).collect();
+    assert_eq!(lines[0], "0,1,8,0.5,0.25,2,0,0,1,ok");
+    assert_eq!(lines[1..3], ["1,0,,,,,,,,invalid", "2,0,,,,,,,,invalid"]);
+    assert_eq!(lines[3], "3,1,4,0.5,0.25,2,0,0,1,ok");
+    // In 64 bits the second surface and the third ray are valid.
+    let answers = printed(&folder.done("query three.bpt rays.csv --skip-invalid"));
+    assert_eq!(answers.matches("invalid").count(), 1, "{answers}");
+}
+
+#[test]
+fn too_little_room_ends_with_4() {
+    let folder = Folder::new();
+    for (flags, parts) in [
+        ("--limit arena-bytes=100000", &["needs", "bytes", "given 100000", "patches"][..]),
+        ("--limit patches-per-surface=10", &["surface 0", "more than 10"]),
+        ("--flatness 1e-9 --limit patches-per-surface=1000", &["more than 1000", "--flatness"]),
+    ] {
+        folder.fails(&format!("render scene.toml -o a.png {flags}"), 4, parts);
+        folder.fails(&format!("query teapot.bpt rays.csv -o a.csv {flags}"), 4, parts);
+        folder.fails(&format!("info teapot.bpt {flags}"), 4, parts);
+    }
+}
+
+#[test]
+fn outputs_that_cannot_be_written_end_with_5() {
+    let folder = Folder::new();
+    folder.fails("render scene.toml -o no/a.png", 5, &["cannot write `no/a.png`", "no folder `no`"]);
+    folder.fails("render scene.toml -o a.png --stats no/s.json", 5, &["no folder `no`"]);
+    folder.fails("render scene.toml -o .", 5, &["it is a folder"]);
+    folder.fails(&format!("query {TEAPOT} -o no/a.csv"), 5, &["no folder `no`"]);
+    folder.fails("info teapot.bpt -o no/a.csv", 5, &["no folder `no`"]);
+    folder.fails("--size 4x4 -o no/a.png", 5, &["no folder `no`"]);
+    // What was there before stays.
+    folder.put("old.csv", "old");
+    folder.put("bad.csv", "ox,oy,oz,dx,dy,dz\n1,2,3,0,0,0\n");
+    folder.fails("query teapot.bpt bad.csv -o old.csv", 3, &["direction is zero"]);
+    assert_eq!(folder.text("old.csv"), "old");
+}
