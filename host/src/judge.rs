@@ -39,6 +39,8 @@ pub struct Truth {
     pub roots: usize,
     /// Whether an unresolved part leaves the answer open.
     pub open: bool,
+    /// How far the ray may be displaced before the answer changes kind, as a share of the diagonal: see [`Verdict::margin`].
+    pub margin: f64,
 }
 
 impl From<&Verdict> for Truth {
@@ -47,6 +49,7 @@ impl From<&Verdict> for Truth {
             closest: verdict.roots.first().map(|root| root.t),
             roots: verdict.roots.len(),
             open: verdict.unresolved > 0 && verdict.margin == 0.0,
+            margin: verdict.margin,
         }
     }
 }
@@ -103,7 +106,7 @@ mod tests {
 
     fn judged(outcome: Outcome, closest: Option<f64>, open: bool) -> Agreement {
         let mut agreement = Agreement::default();
-        let truth = Truth { closest, roots: usize::from(closest.is_some()), open };
+        let truth = Truth { closest, roots: usize::from(closest.is_some()), open, margin: 1.0 };
         agreement.add(&outcome, &truth, [0.0, 0.0, 2.0], 10.0, &allowance(Precision::F64));
         agreement
     }

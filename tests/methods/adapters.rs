@@ -1,0 +1,41 @@
+//! One adapter per method and precision.
+
+use patchray_host::lower::Stages;
+use patchray_host::prepared::Prepared;
+use patchray_host::scene::model::Model;
+use patchray_host::scene::trace::{Method, Precision};
+use patchray_host::settings::Settings;
+
+/// A method in a precision, with its defaults.
+#[derive(Clone, Copy, Debug)]
+pub struct Adapter {
+    /// The method.
+    pub method: Method,
+    /// The precision.
+    pub precision: Precision,
+}
+
+/// All of them.
+pub const ADAPTERS: [Adapter; 4] = [
+    Adapter { method: Method::Newton, precision: Precision::F64 },
+    Adapter { method: Method::NewtonCoherent, precision: Precision::F64 },
+    Adapter { method: Method::Newton, precision: Precision::F32 },
+    Adapter { method: Method::NewtonCoherent, precision: Precision::F32 },
+];
+
+impl Adapter {
+    /// What the tables call it.
+    pub fn name(&self) -> String {
+        format!("{:?} {:?}", self.method, self.precision)
+    }
+
+    /// The defaults, with this method and precision.
+    pub fn settings(&self) -> Settings {
+        Settings { method: self.method, precision: self.precision, ..Settings::default() }
+    }
+
+    /// The model, made ready with the stages that the method needs.
+    pub fn prepare(&self, model: &Model, settings: &Settings) -> Prepared {
+        Prepared::build(model, Stages::of(self.method), settings).expect("the corpus is valid in both precisions")
+    }
+}
