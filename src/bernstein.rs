@@ -102,10 +102,26 @@ impl<S, const ORDER: usize> Default for Basis<S, ORDER> {
 pub struct Full;
 
 /// The degrees of a net in u and v, and with them the shape of the slice that holds it: u is the outer index.
+///
+/// Of 8 bits, so that degree + 1 is not 0 whatever it holds: rows of length 0 could not be cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Degrees {
-    pub(crate) u: usize,
-    pub(crate) v: usize,
+    pub(crate) u: u8,
+    pub(crate) v: u8,
+}
+
+impl Degrees {
+    /// The number of rows, of one u each.
+    #[inline(always)]
+    pub(crate) fn rows(self) -> usize {
+        usize::from(self.u) + 1
+    }
+
+    /// The number of columns, of one v each.
+    #[inline(always)]
+    pub(crate) fn columns(self) -> usize {
+        usize::from(self.v) + 1
+    }
 }
 
 /// Value and first derivatives at (u, v) of the sum over `net`; slightly outside [0, 1] the polynomials go on.
@@ -137,7 +153,7 @@ fn jet_any_degree<S: Scalar, T: Linear<S>>(
 ) -> Result<Jet<T>, Full> {
     basis.fill(degrees, [u, v])?;
     let mut jet = Jet { point: T::ZERO, du: T::ZERO, dv: T::ZERO };
-    for (row, &[b, b1, _]) in net.chunks_exact(degrees.v + 1).zip(basis.u.iter()) {
+    for (row, &[b, b1, _]) in net.chunks_exact(degrees.columns()).zip(basis.u.iter()) {
         let (mut point, mut dv) = (T::ZERO, T::ZERO);
         for (&p, &[c, c1, _]) in row.iter().zip(basis.v.iter()) {
             point = point + p * c;
@@ -166,7 +182,7 @@ pub(crate) fn value<S: Scalar, P: Copy, T: Linear<S>>(
     }
     basis.fill(degrees, [u, v])?;
     let mut sum = T::ZERO;
-    for (row, &[b, ..]) in net.chunks_exact(degrees.v + 1).zip(basis.u.iter()) {
+    for (row, &[b, ..]) in net.chunks_exact(degrees.columns()).zip(basis.u.iter()) {
         let along = row.iter().zip(basis.v.iter()).fold(T::ZERO, |sum, (&p, &[c, ..])| sum + part(p) * c);
         sum = sum + along * b;
     }
@@ -176,8 +192,8 @@ pub(crate) fn value<S: Scalar, P: Copy, T: Linear<S>>(
 impl<S: Scalar> BasisView<'_, S> {
     /// Fills both bases.
     pub(crate) fn fill(&mut self, degrees: Degrees, [u, v]: [S; 2]) -> Result<(), Full> {
-        bernstein(degrees.u, u, self.u)?;
-        bernstein(degrees.v, v, self.v)
+        bernstein(usize::from(degrees.u), u, self.u)?;
+        bernstein(usize::from(degrees.v), v, self.v)
     }
 }
 

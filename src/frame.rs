@@ -10,7 +10,7 @@ use crate::scalar::{Scalar, Vector3};
 
 /// By how many roundings ([`Scalar::EPSILON`] in the frame, where coordinates are below 1) boxes are padded.
 ///
-/// It covers the error of a coordinate difference to an origin up to [`NEAR`] scenes away, of the moved origin, and of the
+/// It covers the error of a coordinate difference to an origin up to 8 scenes away, of the moved origin, and of the
 /// tests made with them, some 20 roundings of numbers up to 2 together; the rest is reserve. Larger is safe and makes thin
 /// boxes thicker: in `f32` 64 roundings are 8e-6, a hundredth of a patch's thickness at the default flatness.
 pub const PADDING: u32 = 64;

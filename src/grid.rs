@@ -175,11 +175,14 @@ pub struct Grid<'m, S> {
 
 impl<'m, S: Scalar> Grid<'m, S> {
     /// The view of a grid whose offsets and references lie in `offsets` and `references`, among others; `None` if they do
-    /// not hold it.
+    /// not hold it, or if the slot was never filled: a grid that was built has a voxel at least.
     #[inline]
     pub fn new(slot: &'m GridSlot<S>, offsets: &'m [u32], references: &'m [u32]) -> Option<Self> {
         let [x, y, z] = slot.counts.map(|n| n as usize);
         let voxels = x.checked_mul(y)?.checked_mul(z)?;
+        if voxels == 0 {
+            return None;
+        }
         let first = slot.first as usize;
         let offsets = offsets.get(first..first.checked_add(voxels)?.checked_add(1)?)?;
         Some(Grid { slot, offsets, references })
@@ -293,5 +296,19 @@ impl<'m, S: Scalar> Grids<'m, S> {
     /// The most voxels that one line can pass, summed over the grids.
     pub fn longest_walks(&self) -> u32 {
         self.grids.iter().fold(0, |sum: u32, grid| sum.saturating_add(grid.longest_walk()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slot_that_was_never_filled_is_no_grid_but_one_over_nothing_is() {
+        assert!(Grid::new(&GridSlot::<f32>::EMPTY, &[0; 4], &[]).is_none());
+        let mut offsets = [7; 2];
+        let (mut filled, mut none) = (Arena::new(&mut offsets), Arena::new(&mut []));
+        let slot = GridSlot::build(0, |_| Aabb::EMPTY, 4.0_f32, 100, &mut filled, &mut none).unwrap();
+        assert!(Grid::new(&slot, filled.finish(), &[]).is_some());
     }
 }

@@ -14,7 +14,7 @@ pub enum Acceptance {
     #[default]
     Paper,
     /// Only where the patch's projection along the ray is proved injective
-    /// ([`Crossing::at_most_once`](crate::patch::Crossing::at_most_once)). A rational patch is never proved.
+    /// ([`Patch::at_most_once`](crate::patch::Patch::at_most_once)). A rational patch is never proved.
     Proved,
 }
 

@@ -27,6 +27,12 @@ pub struct Root<S> {
     pub grazing: bool,
 }
 
+/// Where an iteration ended.
+struct Place<S> {
+    at: [S; 2],
+    grazing: bool,
+}
+
 /// One ray and one surface.
 #[derive(Debug)]
 pub struct Solver<'a, 's, 'm, P: Point> {
@@ -61,7 +67,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     ///
     /// The iteration may leave the patch that gave the start: it works on the whole surface.
     pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
-        let Some(([u, v], grazing)) = self.iterate(start, work)? else {
+        let Some(Place { at: [u, v], grazing }) = self.iterate(start, work)? else {
             return Ok(None);
         };
         let depth = self.planes.depth_on(&self.surface.net, [u, v], self.basis).map_err(|Full| Limit::Scratch)?;
@@ -70,7 +76,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
 
     /// The parameters that the iteration comes to, and whether the ray is tangent there.
     #[inline(always)]
-    fn iterate(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<([P::Scalar; 2], bool)>, Limit> {
+    fn iterate(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Place<P::Scalar>>, Limit> {
         let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
         let (surface, limits) = (self.surface, self.limits);
         if !self.projected {
@@ -95,7 +101,8 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
             let size = (fu.abs() + gu.abs()) * (fv.abs() + gv.abs());
             // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
             if residual <= noise::<P::Scalar>() * jet.point.weight() {
-                return Ok(Some(([u, v], determinant.abs() < tangent::<P::Scalar>() * size)));
+                let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
+                return Ok(Some(Place { at: [u, v], grazing }));
             }
             // Damping. A NaN counts as growth.
             if !(residual < last) {
@@ -122,7 +129,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
                     return Ok(None);
                 }
                 let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
-                return Ok(Some(([next_u.clamped(zero, one), next_v.clamped(zero, one)], grazing)));
+                return Ok(Some(Place { at: [next_u.clamped(zero, one), next_v.clamped(zero, one)], grazing }));
             }
             // An iterate outside is held at the edge, where a root may lie; a second one in a row is leaving for good.
             let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));

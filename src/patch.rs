@@ -122,7 +122,7 @@ pub struct Parallelepiped<S> {
 #[repr(C)]
 pub struct Patch<S> {
     bounds: Parallelepiped<S>,
-    /// The most by which derivatives stray from the parallelogram's sides: see [`Crossing::at_most_once`].
+    /// The most by which derivatives stray from the parallelogram's sides: see [`Patch::at_most_once`].
     stray: S,
     /// How many times longer the box is than the parallelogram, along v1 and v2, in steps of 1 / [`SIDE_STEPS`]: good for
     /// a start, not for a proof.
@@ -144,6 +144,9 @@ pub struct Crossing<S> {
     /// centre × e1, e2, e3.
     offset: [S; 3],
 }
+
+/// A patch whose box a ray meets, and how.
+pub type Met<'m, S> = (&'m Patch<S>, Crossing<S>);
 
 /// Where a ray enters or leaves a box.
 #[derive(Clone, Copy, Debug, PartialEq)]

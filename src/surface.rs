@@ -214,8 +214,7 @@ impl core::error::Error for NetError {}
 /// A control net: a view of lent points. See the module's head for the order of the points.
 #[derive(Clone, Copy, Debug)]
 pub struct Net<'m, P> {
-    degree_u: usize,
-    degree_v: usize,
+    degrees: Degrees,
     points: &'m [P],
 }
 
@@ -241,7 +240,8 @@ impl<'m, P: Point> Net<'m, P> {
         if points.len() != needed {
             return Err(NetError::Points(Need { needed, given: points.len() }));
         }
-        Ok(Net { degree_u, degree_v, points })
+        // Both are at most MAX_DEGREE here.
+        Ok(Net { degrees: Degrees { u: degree_u as u8, v: degree_v as u8 }, points })
     }
 
     /// Also checks every point: finite, and with a positive weight.
@@ -260,13 +260,15 @@ impl<'m, P: Point> Net<'m, P> {
     }
 
     /// The degree in u.
+    #[inline]
     pub fn degree_u(&self) -> usize {
-        self.degree_u
+        usize::from(self.degrees.u)
     }
 
     /// The degree in v.
+    #[inline]
     pub fn degree_v(&self) -> usize {
-        self.degree_v
+        usize::from(self.degrees.v)
     }
 
     /// The control points, u outer.
@@ -276,18 +278,18 @@ impl<'m, P: Point> Net<'m, P> {
 
     /// The rows of the net: for each index in u, the points along v.
     pub fn rows(&self) -> core::slice::ChunksExact<'m, P> {
-        self.points.chunks_exact(self.degree_v + 1)
+        self.points.chunks_exact(self.degrees.columns())
     }
 
     /// The corners P_00, P_n0, P_0m, P_nm.
     pub fn corners(&self) -> [P; 4] {
-        let row = self.degree_v;
-        let last = self.degree_u * (row + 1);
+        let row = self.degree_v();
+        let last = self.degree_u() * (row + 1);
         [0, last, row, last + row].map(|k| self.points.get(k).copied().unwrap_or(P::EMPTY))
     }
 
     pub(crate) fn degrees(&self) -> Degrees {
-        Degrees { u: self.degree_u, v: self.degree_v }
+        self.degrees
     }
 
     /// Point and first derivatives at (u, v), homogeneous if there are weights; slightly outside [0, 1] the polynomials go
@@ -405,7 +407,7 @@ impl<'m, P: Point> Net<'m, P> {
     pub fn restrict(&self, u: [P::Scalar; 2], v: [P::Scalar; 2], out: &mut VecView<P>) -> Result<(), Full> {
         out.clear();
         out.extend_from_slice(self.points).map_err(|_| Full)?;
-        let (rows, columns) = (self.degree_u + 1, self.degree_v + 1);
+        let (rows, columns) = (self.degrees.rows(), self.degrees.columns());
         for column in 0..columns {
             restrict_line(out, column, columns, rows, u);
         }
@@ -452,7 +454,7 @@ impl<P: Point> Net<'_, P> {
             let position = V::<P>::from_array(difference.weighted_position()).length() * P::Scalar::from_f64(SHEAR);
             if P::RATIONAL { (position + difference.weight().abs() * scalar(3)) / least } else { position }
         };
-        let (n, m, columns) = (self.degree_u, self.degree_v, self.degree_v + 1);
+        let (n, m, columns) = (self.degree_u(), self.degree_v(), self.degrees.columns());
         let second = |points: &[P], stride: usize| {
             let from = |k: usize| points.iter().skip(k * stride).copied();
             let triples = from(0).zip(from(1)).zip(from(2));

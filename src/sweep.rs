@@ -3,7 +3,7 @@
 //! A full search sweeps along the ray, a testing ray back toward its origin; both meet each patch once.
 
 use crate::limits::{Limit, Limits, Work};
-use crate::patch::{Crossing, Patch};
+use crate::patch::{Met, Patch};
 use crate::planes::Planes;
 use crate::scalar::Scalar;
 use crate::walk::{Voxel, Walk};
@@ -34,7 +34,7 @@ impl<'m, S: Scalar> Sweep<'m, S> {
         enough: S,
         limits: &Limits<S>,
         work: &mut Work,
-    ) -> Result<Option<(&'m Patch<S>, Crossing<S>)>, Limit> {
+    ) -> Result<Option<Met<'m, S>>, Limit> {
         let mut patches_left = limits.patches.saturating_sub(work.patches_tested);
         let mut voxels_left = limits.voxels.saturating_sub(work.voxels_visited);
         // Ends: each turn takes a reference of the voxel or goes on to the next voxel.

@@ -4,7 +4,7 @@
 //! parallelepiped, and a leaf's is its patch's. Filled by [`subdivide`](crate::subdivide::subdivide).
 
 use crate::limits::{Limit, Limits, Work};
-use crate::patch::{Crossing, Parallelepiped, Patch};
+use crate::patch::{Met, Parallelepiped, Patch};
 use crate::planes::Planes;
 use crate::scalar::Scalar;
 use crate::subdivide::Patches;
@@ -74,7 +74,7 @@ impl<'m, S: Scalar> Descent<'m, S> {
         planes: &Planes<S>,
         limits: &Limits<S>,
         work: &mut Work,
-    ) -> Result<Option<(&'m Patch<S>, Crossing<S>)>, Limit> {
+    ) -> Result<Option<Met<'m, S>>, Limit> {
         let (mut inner, mut leaf) = (self.inner, self.leaf);
         let mut nodes_left = limits.nodes.saturating_sub(work.nodes_visited);
         let mut patches_left = limits.patches.saturating_sub(work.patches_tested);

@@ -86,8 +86,8 @@ impl<'m, S: Scalar> Grid<'m, S> {
         let slot = self.slot;
         let [x, y, _] = slot.counts.map(|n| n as usize);
         let (offsets, references) = (self.offsets, self.references);
-        let done = slot.counts.contains(&0);
-        let mut walk = Walk { offsets, references, axes: [Across::NONE; 3], voxel: 0, length, came_from: 0, done };
+        let mut walk =
+            Walk { offsets, references, axes: [Across::NONE; 3], voxel: 0, length, came_from: 0, done: false };
         // Written in place: the walk is large, and building its parts apart would copy them.
         let mut stride = 1_usize;
         for k in 0..3 {

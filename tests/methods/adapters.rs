@@ -8,15 +8,15 @@ use patchray_host::settings::Settings;
 
 /// A method in a precision, with its defaults.
 #[derive(Clone, Copy, Debug)]
-pub struct Adapter {
+pub(crate) struct Adapter {
     /// The method.
-    pub method: Method,
+    pub(crate) method: Method,
     /// The precision.
-    pub precision: Precision,
+    pub(crate) precision: Precision,
 }
 
 /// All of them.
-pub const ADAPTERS: [Adapter; 4] = [
+pub(crate) const ADAPTERS: [Adapter; 4] = [
     Adapter { method: Method::Newton, precision: Precision::F64 },
     Adapter { method: Method::NewtonCoherent, precision: Precision::F64 },
     Adapter { method: Method::Newton, precision: Precision::F32 },
@@ -25,17 +25,17 @@ pub const ADAPTERS: [Adapter; 4] = [
 
 impl Adapter {
     /// What the tables call it.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         format!("{:?} {:?}", self.method, self.precision)
     }
 
     /// The defaults, with this method and precision.
-    pub fn settings(&self) -> Settings {
+    pub(crate) fn settings(&self) -> Settings {
         Settings { method: self.method, precision: self.precision, ..Settings::default() }
     }
 
     /// The model, made ready with the stages that the method needs.
-    pub fn prepare(&self, model: &Model, settings: &Settings) -> Prepared {
+    pub(crate) fn prepare(&self, model: &Model, settings: &Settings) -> Prepared {
         Prepared::build(model, Stages::of(self.method), settings).expect("the corpus is valid in both precisions")
     }
 }

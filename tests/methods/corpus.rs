@@ -7,18 +7,16 @@ use patchray_host::scene::teapot;
 
 /// A model with a name.
 #[derive(Clone, Debug)]
-pub struct Case {
+pub(crate) struct Case {
     /// What tables call it.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// The surfaces.
-    pub model: Model,
-    /// Whether there are weights.
-    pub rational: bool,
+    pub(crate) model: Model,
 }
 
 /// In which order rays come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rays {
+pub(crate) enum Rays {
     /// From anywhere to anywhere: no two neighbours have anything in common.
     Random,
     /// Scan lines of views from several sides.
@@ -26,8 +24,8 @@ pub enum Rays {
 }
 
 /// The cases: bicubics, the rational quadrics and the torus, and the general degrees.
-pub fn cases() -> Vec<Case> {
-    let case = |name, model: Model| Case { name, rational: model.surfaces.iter().any(|s| s.rational), model };
+pub(crate) fn cases() -> Vec<Case> {
+    let case = |name, model: Model| Case { name, model };
     let bumpy = |seed, degrees| shapes::single(shapes::bumpy(seed, degrees, [0.1, -0.2, 0.3], 2.0, 0.4));
     vec![
         case("teapot", teapot::model().expect("the built-in teapot is valid")),
@@ -42,7 +40,7 @@ pub fn cases() -> Vec<Case> {
 
 impl Case {
     /// At least `count` rays; exact in `f32`, so that both precisions trace what the oracle judges.
-    pub fn rays(&self, order: Rays, count: usize) -> Vec<RayLine> {
+    pub(crate) fn rays(&self, order: Rays, count: usize) -> Vec<RayLine> {
         let bounds = self.model.control_box().expect("the case has points");
         let size = bounds.diagonal();
         let centre: [f64; 3] = std::array::from_fn(|k| (bounds.min[k] + bounds.max[k]) / 2.0);

@@ -137,7 +137,7 @@ fn rays_in_scan_line_order() {
 #[test]
 fn the_common_view_pixel_by_pixel() {
     let scene = patchray_host::scene::teapot::common_scene().expect("the built-in scene is valid");
-    let case = Case { name: "common view", model: scene.model, rational: false };
+    let case = Case { name: "common view", model: scene.model };
     let view = scene.description.camera.view([512, 512]);
     let rays: Vec<RayLine> = (0..512).flat_map(|py| patchray_host::cmd::render::row(&view, py)).collect();
     let truths = truths(&case, &rays);

@@ -1,0 +1,567 @@
+//! The entry points that compute: written once, exported for both number types and both kinds of control points.
+
+use crate::Lent;
+use core::hint::black_box;
+use heapless::Vec;
+use patchray::arena::Arena;
+use patchray::bernstein::{Basis, Jet, MAX_DEGREE};
+use patchray::frame::{Aabb, Frame};
+use patchray::grid::{Grid, GridError, GridMemory, GridOptions, GridSlot, Grids};
+use patchray::limits::{Extent, GaveUp, Limit, Limits, Work};
+use patchray::method::newton_coherent::Remembered;
+use patchray::method::{Scratch, newton, newton_coherent};
+use patchray::newton::{Root, Solver};
+use patchray::patch::{Crossing, Measure, Parallelepiped, Patch, Pierce};
+use patchray::planes::{DepthRange, Planes, Projected, project_net};
+use patchray::ray::{Hit, Interval, Ray, RayError};
+use patchray::scalar::{Scalar, Vector3};
+use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions, SurfaceSlot};
+use patchray::subdivide::{
+    PatchMemory, Patches, SubdivideError, SubdivideScratch, Subdivided, Subdivision, TreeMemory, subdivide,
+};
+use patchray::surface::{Direction, Net, NetError, Plain, Point, Surface, Weighted};
+use patchray::sweep::Sweep;
+use patchray::tree::{Descent, Tree};
+use patchray::verify::testing_ray;
+use patchray::walk::{Voxel, Walk};
+
+/// Capacities for the highest degree: the owner's choice, and the largest that makes sense.
+const ORDER: usize = MAX_DEGREE + 1;
+const POINTS: usize = ORDER * ORDER;
+
+type Found<S> = Result<Option<Hit<S>>, GaveUp<S>>;
+
+/// A scene's memory, filled by the kernel or by anything else.
+#[derive(Debug)]
+#[repr(C)]
+pub struct LentScene<P: Point> {
+    header: SceneHeader<P::Scalar>,
+    points: Lent<P>,
+    surfaces: Lent<SurfaceSlot<P::Scalar>>,
+    offsets: Lent<u32>,
+    references: Lent<u32>,
+}
+
+impl<P: Point> LentScene<P> {
+    /// # Safety
+    /// See [`Lent::slots`].
+    unsafe fn view<'m>(&self) -> Scene<'m, P> {
+        // SAFETY: the caller keeps the contract of `slots`.
+        let (points, surfaces) = unsafe { (self.points.slots(), self.surfaces.slots()) };
+        // SAFETY: likewise.
+        let (offsets, references) = unsafe { (self.offsets.slots(), self.references.slots()) };
+        Scene::new(self.header, points, surfaces, offsets, references)
+    }
+
+    /// # Safety
+    /// See [`Lent::slots`].
+    unsafe fn memory<'m>(&self) -> SceneMemory<'m, P> {
+        // SAFETY: the caller keeps the contract of `slots`.
+        let (points, surfaces) = unsafe { (self.points.slots(), self.surfaces.slots()) };
+        // SAFETY: likewise.
+        let (offsets, references) = unsafe { (self.offsets.slots(), self.references.slots()) };
+        SceneMemory { points, surfaces, offsets, references }
+    }
+}
+
+/// Memory of patches and trees.
+#[derive(Debug)]
+#[repr(C)]
+pub struct LentPatches<S> {
+    patches: Lent<Patch<S>>,
+    first: Lent<u32>,
+    nodes: Lent<Parallelepiped<S>>,
+    links: Lent<u32>,
+}
+
+impl<S: Scalar> LentPatches<S> {
+    /// # Safety
+    /// See [`Lent::slots`].
+    unsafe fn patches<'m>(&self) -> Patches<'m, S> {
+        // SAFETY: the caller keeps the contract of `slots`.
+        unsafe { Patches::new(self.patches.slots(), self.first.slots()) }
+    }
+
+    /// # Safety
+    /// See [`Lent::slots`].
+    unsafe fn tree<'m>(&self) -> Tree<'m, S> {
+        // SAFETY: the caller keeps the contract of `slots`.
+        unsafe { Tree::new(self.nodes.slots(), self.links.slots()) }
+    }
+}
+
+/// Memory of the grids over patches.
+#[derive(Debug)]
+#[repr(C)]
+pub struct LentGrids<S> {
+    grids: Lent<GridSlot<S>>,
+    offsets: Lent<u32>,
+    references: Lent<u32>,
+}
+
+impl<S: Scalar> LentGrids<S> {
+    /// # Safety
+    /// See [`Lent::slots`].
+    unsafe fn view<'m>(&self) -> Grids<'m, S> {
+        // SAFETY: the caller keeps the contract of `slots`.
+        unsafe { Grids::new(self.grids.slots(), self.offsets.slots(), self.references.slots()) }
+    }
+}
+
+/// What a ray is made of and bounded by.
+#[derive(Debug)]
+#[repr(C)]
+pub struct Asked<S> {
+    origin: [S; 3],
+    direction: [S; 3],
+    interval: [S; 2],
+}
+
+impl<S: Scalar> Asked<S> {
+    fn ray<P: Point<Scalar = S>>(&self, scene: &Scene<'_, P>) -> Result<(Ray<S>, Interval<S>), RayError> {
+        let [min, max] = self.interval;
+        let interval = Interval::new(min, max).unwrap_or(Interval::ahead());
+        Ok((scene.ray(self.origin, self.direction)?, interval))
+    }
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn net<P: Point>(
+    n: usize,
+    m: usize,
+    points: &Lent<P>,
+    out: &mut [Result<Net<'static, P>, NetError>; 2],
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let points = unsafe { points.slots() };
+    *out = [Net::new(n, m, points), Net::checked(n, m, points)];
+}
+
+/// What is asked of one net.
+#[derive(Debug)]
+pub struct OfNet<P: Point> {
+    jet: Option<Jet<P>>,
+    position: Option<[P::Scalar; 3]>,
+    normal: Option<[P::Scalar; 3]>,
+    bend: [P::Scalar; 3],
+    corners: [P; 4],
+    rows: usize,
+    shape: (usize, usize, usize),
+    measure: Measure<P::Scalar>,
+    fitted: [bool; 3],
+}
+
+extern "C" fn evaluate<P: Point>(
+    net: &Net<'static, P>,
+    &[u, v]: &[P::Scalar; 2],
+    basis: &mut Basis<P::Scalar, ORDER>,
+    small: &mut Basis<P::Scalar, 2>,
+    out: &mut OfNet<P>,
+) {
+    out.jet = net.jet(u, v, &mut basis.view()).or(net.jet(u, v, &mut small.view())).ok();
+    out.position = net.position(u, v, &mut basis.view()).ok();
+    out.normal = net.normal(u, v, &mut basis.view()).ok();
+    out.bend = net.bend();
+    out.corners = net.corners();
+    out.rows = net.rows().map(<[P]>::len).sum();
+    out.shape = (net.degree_u(), net.degree_v(), net.points().len());
+}
+
+extern "C" fn cut<P: Point>(
+    net: &Net<'static, P>,
+    &[u, v]: &[[P::Scalar; 2]; 2],
+    low: &mut Vec<P, POINTS>,
+    high: &mut Vec<P, 9>,
+    padding: P::Scalar,
+    out: &mut OfNet<P>,
+) {
+    out.fitted[0] = net.restrict(u, v, low).is_ok();
+    out.fitted[1] = net.halve(Direction::U, low, high).is_ok();
+    out.fitted[2] = net.halve(Direction::V, high, low).is_ok();
+    out.measure = Measure::of(net, padding);
+}
+
+extern "C" fn project<P: Point>(
+    net: &Net<'static, P>,
+    planes: &Planes<P::Scalar>,
+    out: &mut Vec<P::Flat, POINTS>,
+) -> bool {
+    project_net(net, planes, out).is_ok()
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn build<P: Point>(
+    nets: &Lent<Net<'static, P>>,
+    options: &SceneOptions<P::Scalar>,
+    memory: &LentScene<P>,
+    out: &mut Result<Scene<'static, P>, SceneError>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    *out = unsafe { Scene::build(nets.slots(), options, memory.memory()) };
+}
+
+/// What is asked of one scene.
+#[derive(Debug)]
+pub struct OfScene<P: Point> {
+    header: SceneHeader<P::Scalar>,
+    surface: Option<Surface<'static, P>>,
+    normal: Result<[P::Scalar; 3], GaveUp<P::Scalar>>,
+    ray: Result<Ray<P::Scalar>, RayError>,
+    points: usize,
+    numbers: (usize, bool, u32),
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn look<P: Point>(
+    scene: &LentScene<P>,
+    number: usize,
+    hit: &Hit<P::Scalar>,
+    asked: &Asked<P::Scalar>,
+    basis: &mut Basis<P::Scalar, ORDER>,
+    out: &mut OfScene<P>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let scene = unsafe { scene.view() };
+    out.header = scene.header();
+    out.surface = scene.surface(number);
+    out.normal = scene.normal(hit, &mut basis.view());
+    out.ray = scene.ray(asked.origin, asked.direction);
+    out.points = scene.nets().map(|net| net.points().len()).sum();
+    out.numbers = (scene.len(), scene.is_empty(), scene.longest_walk());
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn patches<P: Point>(
+    scene: &LentScene<P>,
+    options: &Subdivision<P::Scalar>,
+    scratch: &mut SubdivideScratch<P, POINTS>,
+    memory: &LentPatches<P::Scalar>,
+    out: &mut Result<Subdivided<'static, P::Scalar>, SubdivideError>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (scene, patches, first) = unsafe { (scene.view(), memory.patches.slots(), memory.first.slots()) };
+    let memory = PatchMemory { patches, first };
+    *out = subdivide(scene.nets(), scene.frame(), options, &mut scratch.view(), memory, None);
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn tree<P: Point>(
+    nets: &Lent<Net<'static, P>>,
+    frame: &Frame<P::Scalar>,
+    options: &Subdivision<P::Scalar>,
+    scratch: &mut SubdivideScratch<P, 16>,
+    memory: &LentPatches<P::Scalar>,
+    out: &mut Result<Subdivided<'static, P::Scalar>, SubdivideError>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (nets, patches, first) = unsafe { (nets.slots(), memory.patches.slots(), memory.first.slots()) };
+    // SAFETY: likewise.
+    let (nodes, links) = unsafe { (memory.nodes.slots(), memory.links.slots()) };
+    let (memory, tree) = (PatchMemory { patches, first }, TreeMemory { nodes, links });
+    *out = subdivide(nets.iter().copied(), frame, options, &mut scratch.view(), memory, Some(tree));
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn grids<P: Point>(
+    surfaces: usize,
+    patches: &LentPatches<P::Scalar>,
+    options: &GridOptions<P::Scalar>,
+    memory: &LentGrids<P::Scalar>,
+    out: &mut Result<Grids<'static, P::Scalar>, GridError>,
+    walks: &mut u32,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (patches, filled) = unsafe { (patches.patches(), memory.view()) };
+    *walks = filled.longest_walks();
+    // SAFETY: likewise.
+    let (grids, offsets, references) =
+        unsafe { (memory.grids.slots(), memory.offsets.slots(), memory.references.slots()) };
+    *out = Grids::build(surfaces, &patches, options, GridMemory { grids, offsets, references });
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn trace_newton<P: Point>(
+    scene: &LentScene<P>,
+    patches: &LentPatches<P::Scalar>,
+    asked: &Asked<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut Scratch<P, ORDER, POINTS>,
+    work: &mut Work,
+    out: &mut Result<Found<P::Scalar>, RayError>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (scene, tree, patches) = unsafe { (scene.view(), patches.tree(), patches.patches()) };
+    *out = asked.ray(&scene).map(|(ray, interval)| {
+        newton::closest(&scene, &patches, &tree, &ray, &interval, limits, &mut scratch.view(), work)
+    });
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn trace_coherent<P: Point>(
+    scene: &LentScene<P>,
+    patches: &LentPatches<P::Scalar>,
+    grids: &LentGrids<P::Scalar>,
+    memory: &Lent<Remembered<P::Scalar>>,
+    scan_line: u32,
+    asked: &Asked<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut Scratch<P, ORDER, POINTS>,
+    work: &mut Work,
+    out: &mut Result<Found<P::Scalar>, RayError>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (scene, patches, grids, memory) = unsafe { (scene.view(), patches.patches(), grids.view(), memory.slots()) };
+    *out = asked.ray(&scene).map(|(ray, interval)| {
+        let (scratch, limits) = (&mut scratch.view(), limits);
+        newton_coherent::closest(&scene, &patches, &grids, memory, scan_line, &ray, &interval, limits, scratch, work)
+    });
+}
+
+/// The solve alone, on whatever calls itself a surface.
+extern "C" fn newton_solve<P: Point>(
+    surface: &Surface<'static, P>,
+    planes: &Planes<P::Scalar>,
+    start: &[P::Scalar; 2],
+    limits: &Limits<P::Scalar>,
+    work: &mut Work,
+    scratch: &mut Scratch<P, ORDER, POINTS>,
+    out: &mut Result<Option<Root<P::Scalar>>, Limit>,
+) {
+    let mut scratch = scratch.view();
+    *out = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis).solve(*start, work);
+}
+
+/// What the frame, a box and a ray's planes give.
+#[derive(Debug)]
+pub struct OfFrame<S> {
+    frame: Frame<S>,
+    exponent: i32,
+    point: [S; 3],
+    lengths: [S; 4],
+    ray: Result<Ray<S>, RayError>,
+    entered: Option<(Planes<S>, DepthRange<S>)>,
+    grown: [Aabb<S>; 3],
+    at: [[S; 3]; 6],
+    projected: [Projected<S>; 2],
+    ts: (S, Option<S>),
+    interval: Option<Interval<S>>,
+    vector: [[S; 3]; 2],
+    empty: bool,
+}
+
+extern "C" fn frame<P: Point>(
+    bounds: &Aabb<P::Scalar>,
+    frame: &Frame<P::Scalar>,
+    ray: &Ray<P::Scalar>,
+    planes: &Planes<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    asked: &Asked<P::Scalar>,
+    out: &mut OfFrame<P::Scalar>,
+) {
+    let (point, t) = (&asked.origin, asked.interval[0]);
+    out.frame = Frame::new(*bounds);
+    out.exponent = frame.exponent();
+    out.point = frame.from_caller(*point);
+    let vector = <P::Scalar as Scalar>::Vec3::from_array(*point);
+    out.lengths = [frame.diagonal(), bounds.diagonal(), Frame::<P::Scalar>::padding(), vector.length()];
+    out.vector = [vector.unit().to_array(), bounds.sides()];
+    out.ray = frame.ray(asked.origin, asked.direction);
+    out.entered = frame.enter(ray, interval);
+    out.grown = [bounds.with(*point), bounds.union(*bounds), bounds.padded(t)];
+    out.empty = bounds.is_empty();
+    out.at = [ray.at(t), ray.origin(), ray.direction(), planes.origin(), planes.direction(), planes.inverse()];
+    out.projected = [planes.vector(point), planes.point(point)];
+    out.ts = (planes.t(t), planes.t_in_interval(interval.min()));
+    out.interval = Interval::new(t, interval.max());
+}
+
+/// What a patch gives for a ray.
+#[derive(Debug)]
+pub struct OfPatch<S> {
+    crossing: Option<Crossing<S>>,
+    bounds: Aabb<S>,
+    pierces: Option<[Pierce<S>; 2]>,
+    starts: [Option<[S; 2]>; 2],
+    says: [bool; 6],
+    domain: ([[S; 2]; 2], [u32; 2]),
+    filled: Patch<S>,
+}
+
+extern "C" fn patch<P: Point>(
+    patch: &Patch<P::Scalar>,
+    crossing: &Crossing<P::Scalar>,
+    measure: &Measure<P::Scalar>,
+    planes: &Planes<P::Scalar>,
+    range: &DepthRange<P::Scalar>,
+    &[u, v]: &[P::Scalar; 2],
+    out: &mut OfPatch<P::Scalar>,
+) {
+    out.crossing = patch.bounds().crossing(planes);
+    out.bounds = patch.bounds().aabb();
+    out.pierces = crossing.pierces();
+    out.starts = [patch.parallelogram(crossing), out.pierces.map(|[first, _]| patch.at(&first))];
+    let domain = patch.domain();
+    out.says = [
+        crossing.overlaps(range),
+        patch.is_critical(crossing, u),
+        patch.at_most_once(crossing),
+        patch.bounds().met(planes),
+        domain.holds(u, v),
+        domain.is_rough(),
+    ];
+    out.domain = (domain.bounds(), domain.levels());
+    out.filled = measure.patch(domain);
+}
+
+/// A grid over boxes of any numbers, and a walk in any state.
+///
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn walk<P: Point>(
+    boxes: &Lent<Aabb<P::Scalar>>,
+    items: usize,
+    density: P::Scalar,
+    most: u32,
+    memory: &LentGrids<P::Scalar>,
+    slot: &'static GridSlot<P::Scalar>,
+    planes: &Planes<P::Scalar>,
+    range: &DepthRange<P::Scalar>,
+    walk: &mut Walk<'static, P::Scalar>,
+    sum: &mut usize,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (boxes, offsets, references) = unsafe { (boxes.slots(), memory.offsets.slots(), memory.references.slots()) };
+    let fresh = |mut voxel: Voxel<'static, P::Scalar>| {
+        core::iter::from_fn(move || voxel.next_fresh()).fold(0, usize::wrapping_add)
+    };
+    if let Some(Ok(voxel)) = walk.advance() {
+        *sum ^= fresh(voxel);
+    }
+    {
+        let (mut offsets, mut references) = (Arena::new(offsets), Arena::new(references));
+        let boxes = |k: usize| boxes.get(k).copied().unwrap_or(Aabb::EMPTY);
+        black_box(&GridSlot::build(items, boxes, density, most, &mut offsets, &mut references).is_ok());
+    }
+    // SAFETY: as above; the slices before are no longer used.
+    let (offsets, references) = unsafe { (memory.offsets.slots(), memory.references.slots()) };
+    let Some(grid) = Grid::new(slot, offsets, references) else {
+        return;
+    };
+    if let Some((mut walk, _)) = grid.enter(planes, range) {
+        while let Some(Ok(voxel)) = walk.advance() {
+            *sum ^= fresh(voxel);
+        }
+    }
+}
+
+/// A descent and a sweep in any state, and a descent from a tree in any memory.
+///
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn descend<P: Point>(
+    lent: &LentPatches<P::Scalar>,
+    surface: usize,
+    descent: &mut Descent<'static, P::Scalar>,
+    sweep: &mut Sweep<'static, P::Scalar>,
+    enough: P::Scalar,
+    planes: &Planes<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    work: &mut Work,
+    found: &mut usize,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (patches, tree) = unsafe { (lent.patches(), lent.tree()) };
+    *found = usize::from(matches!(sweep.next_patch(planes, enough, limits, work), Ok(Some(_))));
+    *found ^= patches.all().len() ^ tree.nodes().len() ^ tree.links().len();
+    *found ^= patches.of_surface(surface).map_or(0, <[_]>::len);
+    *found ^= usize::from(matches!(descent.next_patch(planes, limits, work), Ok(Some(_))));
+    if let Some(mut descent) = tree.of_surface(&patches, surface) {
+        while let Ok(Some(_)) = descent.next_patch(planes, limits, work) {
+            *found = found.wrapping_add(1);
+        }
+    }
+}
+
+/// The testing ray alone.
+///
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn verify<P: Point>(
+    grids: &LentGrids<P::Scalar>,
+    surface: usize,
+    patches: &Lent<Patch<P::Scalar>>,
+    planes: &Planes<P::Scalar>,
+    root: &Root<P::Scalar>,
+    nearest: P::Scalar,
+    limits: &Limits<P::Scalar>,
+    work: &mut Work,
+    owners: &mut u32,
+    out: &mut Result<(), Limit>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (grids, patches) = unsafe { (grids.view(), patches.slots()) };
+    let Some(grid) = grids.of_surface(surface) else {
+        return;
+    };
+    *out = testing_ray(&grid, patches, planes, root, nearest, limits, work, |listed, _| {
+        *owners = owners.wrapping_add(u32::from(listed.owner));
+        Ok(())
+    });
+}
+
+/// An arena asked for anything.
+///
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn arena<P: Point>(slots: &Lent<P>, count: usize, at: usize, value: &P, sum: &mut usize) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let mut arena = Arena::new(unsafe { slots.slots() });
+    arena.extend(count, *value);
+    arena.push(*value);
+    arena.extend(at, *value);
+    arena.push(*value);
+    arena.set(at, *value);
+    *sum = arena.since(at).map_or(0, |since| since.len());
+    let need = arena.need();
+    *sum ^= arena.len() ^ need.needed ^ need.given ^ usize::from(need.met()) ^ usize::from(arena.is_empty());
+    *sum ^= arena.finish().len();
+}
+
+extern "C" fn worst_case<P: Point>(limits: &Limits<P::Scalar>, extent: &Extent, out: &mut (Work, [u32; Work::COUNT])) {
+    let work = limits.worst_case(extent);
+    *out = (work, work.counts());
+}
+
+/// An exported function's address. The compiler has to expect callers that it does not see.
+#[derive(Debug)]
+#[repr(transparent)]
+pub struct Entry(*const ());
+
+// SAFETY: the address of code, which nothing writes to.
+unsafe impl Sync for Entry {}
+
+/// Exports generic functions for each number type and kind of control points.
+macro_rules! export {
+    ($($function:ident)*) => {
+        $(export!($function: "f32_plain" Plain<f32>, "f32_weighted" Weighted<f32>, "f64_plain" Plain<f64>, "f64_weighted" Weighted<f64>);)*
+    };
+    ($function:ident: $($kind:literal $point:ty),*) => {
+        $(const _: () = {
+            #[unsafe(export_name = concat!("reach_", stringify!($function), "_", $kind))]
+            static ENTRY: Entry = Entry($function::<$point> as *const ());
+        };)*
+    };
+}
+
+export! {
+    net evaluate cut project build look patches tree grids trace_newton trace_coherent newton_solve frame patch walk descend
+    verify arena worst_case
+}
