@@ -90,7 +90,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         let (mut step_u, mut step_v) = (zero, zero);
         let mut last = P::Scalar::INFINITY;
         let mut halvings = 0;
-        let mut held_before = false;
+        let mut beyond_before = P::Scalar::INFINITY;
         // Ends: a fixed number of evaluations.
         for _ in 0..limits.newton_iterations {
             spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
@@ -124,20 +124,26 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
             let [bend_uu, bend_uv, bend_vv] = surface.bend;
             let left = bend_uu * (du * du) + bend_uv * (du * dv).abs() + bend_vv * (dv * dv);
             if left <= limits.tolerance {
-                // Converged; what is left to see is whether the root lies on the surface or beyond its edge.
-                if !(on_surface(next_u) && on_surface(next_v)) {
+                // Converged; what is left to see is whether the root lies on the surface or beyond its edge. Of a root on
+                // an edge the step may leave as much on the far side as on the near: neighbours must not both refuse it,
+                // so this is judged by how far the ray sees the point move when it is held, not by parameters.
+                let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
+                let (off_u, off_v) = ((next_u - held_u).abs(), (next_v - held_v).abs());
+                let moved = off_u * (fu.abs() + gu.abs()) + off_v * (fv.abs() + gv.abs());
+                let allowed = (limits.tolerance + noise()) * P::Scalar::TWO * jet.point.weight();
+                if !(moved <= allowed) {
                     return Ok(None);
                 }
                 let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
-                return Ok(Some(Place { at: [next_u.clamped(zero, one), next_v.clamped(zero, one)], grazing }));
+                return Ok(Some(Place { at: [held_u, held_v], grazing }));
             }
-            // An iterate outside is held at the edge, where a root may lie; a second one in a row is leaving for good.
+            // An iterate outside is held at the edge, where a root may lie; one that goes on as far is leaving for good.
             let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
-            let held = held_u != next_u || held_v != next_v;
-            if held && held_before {
+            let beyond = (next_u - held_u).abs() + (next_v - held_v).abs();
+            if !(beyond + beyond <= beyond_before) {
                 return Ok(None);
             }
-            held_before = held;
+            beyond_before = if beyond > zero { beyond } else { P::Scalar::INFINITY };
             (from_u, from_v, last, halvings) = (u, v, residual, 0);
             (step_u, step_v) = (held_u - u, held_v - v);
             (u, v) = (held_u, held_v);
@@ -157,12 +163,4 @@ fn noise<S: Scalar>() -> S {
 fn tangent<S: Scalar>() -> S {
     // √ε, as a constant of each type.
     S::from_f64(if S::EPSILON.to_f64() > 1e-10 { 3.5e-4 } else { 1.5e-8 })
-}
-
-/// Whether a parameter lies in [0, 1] up to the rounding of a root that lies on the edge: neighbours that share the edge
-/// must not both refuse it.
-#[inline(always)]
-fn on_surface<S: Scalar>(t: S) -> bool {
-    let slack = S::EPSILON * S::from_u32(64);
-    t >= -slack && t <= S::ONE + slack
 }
