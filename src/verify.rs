@@ -9,45 +9,45 @@ use crate::newton::Root;
 use crate::patch::{Crossing, Patch};
 use crate::planes::{DepthRange, Planes};
 use crate::scalar::Scalar;
-use crate::sweep::Sweep;
+use crate::sweep::sweep;
 
 /// A patch whose parallelepiped the testing ray meets.
 #[derive(Clone, Copy, Debug)]
-pub struct Listed<'m, S> {
+pub struct Listed<'p, S> {
     /// The patch.
-    pub patch: &'m Patch<S>,
+    pub patch: &'p Patch<S>,
     /// How the ray, as a line, passes its box.
-    pub crossing: Crossing<S>,
+    pub crossing: &'p Crossing<S>,
     /// Whether its domain holds the point to be verified.
     pub owner: bool,
 }
 
 /// Sends a testing ray from `root` back to depth `nearest`, and calls `visit` with each patch of `patches` whose box it
 /// meets, once each, from the point toward the origin.
-pub fn testing_ray<'m, S: Scalar>(
-    grid: &Grid<'m, S>,
-    patches: &'m [Patch<S>],
+#[inline(always)]
+pub fn testing_ray<S: Scalar>(
+    grid: &Grid<'_, S>,
+    patches: &[Patch<S>],
     planes: &Planes<S>,
     root: &Root<S>,
     nearest: S,
     limits: &Limits<S>,
     work: &mut Work,
-    mut visit: impl FnMut(Listed<'m, S>, &mut Work) -> Result<(), Limit>,
+    mut visit: impl FnMut(&Listed<'_, S>, &mut Work) -> Result<(), Limit>,
 ) -> Result<(), Limit> {
     let (origin, direction) = (planes.origin(), planes.direction());
     let start = core::array::from_fn(|k| origin[k] + direction[k] * root.depth);
     let inverse = planes.inverse().map(|c| -c);
-    let mut sweep = Sweep::new(grid.walk(&start, &inverse, root.depth - nearest), patches);
     let range = DepthRange { min: nearest, max: root.depth };
-    // Ends with the walk.
-    while let Some((patch, crossing)) = sweep.next_patch(planes, S::INFINITY, limits, work)? {
+    let walk = grid.walk(&start, &inverse, root.depth - nearest);
+    sweep(walk, patches, planes, limits, work, |patch, crossing, work| {
         let owner = patch.domain().holds(root.u, root.v);
         // The owner's box holds the point; another's counts if it reaches between point and origin.
-        if owner || reaches(&crossing, &range) {
-            visit(Listed { patch, crossing, owner }, work)?;
+        if owner || reaches(crossing, &range) {
+            visit(&Listed { patch, crossing, owner }, work)?;
         }
-    }
-    Ok(())
+        Ok(S::INFINITY)
+    })
 }
 
 /// Whether the ray is inside the box anywhere in the range.

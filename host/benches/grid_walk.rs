@@ -8,7 +8,7 @@ use patchray::limits::{Limits, Work};
 use patchray::planes::DepthRange;
 use patchray::ray::Interval;
 use patchray::surface::Plain;
-use patchray::sweep::Sweep;
+use patchray::sweep::sweep;
 use patchray_host::lower::{Lowered, Preparation, Stages};
 use std::hint::black_box;
 
@@ -54,10 +54,12 @@ fn benches(criterion: &mut Criterion) {
                     let Some((walk, _)) = grid.enter(black_box(&planes), &range) else {
                         continue;
                     };
-                    let mut sweep = Sweep::new(walk, patches.of_surface(surface).expect("the patches were built"));
-                    while let Ok(Some(_)) = sweep.next_patch(&planes, f64::INFINITY, &limits, &mut work) {
+                    let patches = patches.of_surface(surface).expect("the patches were built");
+                    let swept = sweep(walk, patches, &planes, &limits, &mut work, |_, _, _| {
                         met += 1;
-                    }
+                        Ok(f64::INFINITY)
+                    });
+                    swept.expect("the limits are far");
                 }
                 met
             });

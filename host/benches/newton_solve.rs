@@ -7,16 +7,13 @@ use patchray::limits::{Limits, Work};
 use patchray::method::Scratch;
 use patchray::newton::Solver;
 use patchray::ray::Interval;
-use patchray::surface::{Plain, Point, Weighted};
+use patchray::scalar::Scalar;
+use patchray::surface::{Plain, Weighted};
 use patchray_host::lower::{FromFile, Lowered, NET, ORDER, Preparation, Stages};
 use patchray_host::scene::model::Model;
 use std::hint::black_box;
 
-fn solve<P: FromFile>(criterion: &mut Criterion, name: &str, model: &Model)
-where
-    P: Point,
-{
-    use patchray::scalar::Scalar;
+fn solve<P: FromFile>(criterion: &mut Criterion, name: &str, model: &Model) {
     let stages = Stages { patches: true, tree: false, grids: false };
     let lowered = Lowered::<P>::build(model, stages, &Preparation::default()).expect("the model is valid");
     let scene = lowered.scene();

@@ -5,11 +5,11 @@ mod common;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
-use patchray::surface::{Plain, Point};
+use patchray::surface::Plain;
 use patchray_host::lower::{FromFile, Lowered, Preparation, Stages};
 use std::hint::black_box;
 
-fn test<P: FromFile + Point>(criterion: &mut Criterion, precision: &str) {
+fn test<P: FromFile>(criterion: &mut Criterion, precision: &str) {
     let stages = Stages { patches: true, tree: false, grids: false };
     let lowered = Lowered::<P>::build(&common::teapot(), stages, &Preparation::default()).expect("the model is valid");
     let number = |value: f64| P::Scalar::from_f64(value);

@@ -4,7 +4,7 @@ mod common;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use patchray::limits::Limits;
-use patchray::surface::{Plain, Point, Weighted};
+use patchray::surface::{Plain, Weighted};
 use patchray_host::lower::{FromFile, Lowered, Preparation, Stages};
 use patchray_host::method::{Newton, NewtonCoherent};
 use patchray_host::scanline::{MethodTracer, Tally, Tracer};
@@ -43,7 +43,7 @@ fn trace(criterion: &mut Criterion, name: &str, tracer: &dyn Tracer, rays: &[Ray
     group.finish();
 }
 
-fn both_methods<P: FromFile + Point>(criterion: &mut Criterion, name: &str, model: &Model) {
+fn both_methods<P: FromFile>(criterion: &mut Criterion, name: &str, model: &Model) {
     let lowered = Lowered::<P>::build(model, Stages::ALL, &Preparation::default()).expect("the model is valid");
     let rays = line(model);
     let newton = MethodTracer::new(Newton::over(&lowered), Limits::default());

@@ -23,7 +23,7 @@ use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::subdivide::Patches;
 use crate::surface::Point;
-use crate::sweep::Sweep;
+use crate::sweep::sweep;
 use crate::verify::testing_ray;
 
 /// Coherence memory: what the previous ray of a scan line left on one surface. A slot of memory that the caller lends, one
@@ -116,12 +116,12 @@ impl<P: Point> Search<'_, '_, '_, P> {
         testing_ray(grid, patches, planes, &point, range.min, limits, work, |listed, work| {
             if listed.owner {
                 owners += 1;
-                if met_at_most_once(listed.patch, &listed.crossing, limits) {
+                if met_at_most_once(listed.patch, listed.crossing, limits) {
                     return Ok(());
                 }
             }
             alone = false;
-            if let Some(root) = from_patch(solver, listed.patch, &listed.crossing, First::Entrance, work)? {
+            if let Some(root) = from_patch(solver, listed.patch, listed.crossing, First::Entrance, work)? {
                 keep_closest(&mut closest, root, planes, &mut work.intersection_points);
             }
             Ok(())
@@ -144,19 +144,17 @@ impl<P: Point> Search<'_, '_, '_, P> {
         let Some((walk, begin)) = self.grid.enter(planes, &self.range) else {
             return Ok(None);
         };
-        let mut sweep = Sweep::new(walk, self.patches);
-        let (mut best, mut enough) = (None, P::Scalar::INFINITY);
-        // Ends with the walk.
-        while let Some((patch, crossing)) = sweep.next_patch(planes, enough, limits, work)? {
-            if !crossing.overlaps(&self.range) {
-                continue;
+        let Search { solver, patches, range, .. } = self;
+        let mut best: Option<Root<P::Scalar>> = None;
+        sweep(walk, patches, planes, limits, work, |patch, crossing, work| {
+            if crossing.overlaps(range) {
+                if let Some(root) = from_patch(solver, patch, crossing, First::AsCritical, work)? {
+                    keep_closest(&mut best, root, planes, &mut work.intersection_points);
+                }
             }
-            if let Some(root) = from_patch(&mut self.solver, patch, &crossing, First::AsCritical, work)? {
-                keep_closest(&mut best, root, planes, &mut work.intersection_points);
-                // A root counts only once the walk has come to it: a patch not met yet may hold a closer one.
-                enough = best.map_or(enough, |closest: Root<P::Scalar>| closest.depth - begin);
-            }
-        }
+            // A root counts only once the walk has come to it: a patch not met yet may hold a closer one.
+            Ok(best.map_or(P::Scalar::INFINITY, |root| root.depth - begin))
+        })?;
         Ok(best)
     }
 }

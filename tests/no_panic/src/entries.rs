@@ -20,7 +20,6 @@ use patchray::subdivide::{
     PatchMemory, Patches, SubdivideError, SubdivideScratch, Subdivided, Subdivision, TreeMemory, subdivide,
 };
 use patchray::surface::{Direction, Net, NetError, Plain, Point, Surface, Weighted};
-use patchray::sweep::Sweep;
 use patchray::tree::{Descent, Tree};
 use patchray::verify::testing_ray;
 use patchray::walk::{Voxel, Walk};
@@ -462,7 +461,7 @@ unsafe extern "C" fn walk<P: Point>(
     }
 }
 
-/// A descent and a sweep in any state, and a descent from a tree in any memory.
+/// A descent in any state, and one from a tree in any memory.
 ///
 /// # Safety
 /// See [`Lent::slots`].
@@ -470,8 +469,6 @@ unsafe extern "C" fn descend<P: Point>(
     lent: &LentPatches<P::Scalar>,
     surface: usize,
     descent: &mut Descent<'static, P::Scalar>,
-    sweep: &mut Sweep<'static, P::Scalar>,
-    enough: P::Scalar,
     planes: &Planes<P::Scalar>,
     limits: &Limits<P::Scalar>,
     work: &mut Work,
@@ -479,8 +476,7 @@ unsafe extern "C" fn descend<P: Point>(
 ) {
     // SAFETY: the caller keeps the contract of `slots`.
     let (patches, tree) = unsafe { (lent.patches(), lent.tree()) };
-    *found = usize::from(matches!(sweep.next_patch(planes, enough, limits, work), Ok(Some(_))));
-    *found ^= patches.all().len() ^ tree.nodes().len() ^ tree.links().len();
+    *found = patches.all().len() ^ tree.nodes().len() ^ tree.links().len();
     *found ^= patches.of_surface(surface).map_or(0, <[_]>::len);
     *found ^= usize::from(matches!(descent.next_patch(planes, limits, work), Ok(Some(_))));
     if let Some(mut descent) = tree.of_surface(&patches, surface) {
