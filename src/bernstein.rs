@@ -320,3 +320,6 @@ fn jet_unrolled<S: Scalar, T: Linear<S>, const R: usize, const C: usize, const N
     }
     jet
 }
+
+#[cfg(test)]
+mod tests;

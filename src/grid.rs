@@ -300,15 +300,4 @@ impl<'m, S: Scalar> Grids<'m, S> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_slot_that_was_never_filled_is_no_grid_but_one_over_nothing_is() {
-        assert!(Grid::new(&GridSlot::<f32>::EMPTY, &[0; 4], &[]).is_none());
-        let mut offsets = [7; 2];
-        let (mut filled, mut none) = (Arena::new(&mut offsets), Arena::new(&mut []));
-        let slot = GridSlot::build(0, |_| Aabb::EMPTY, 4.0_f32, 100, &mut filled, &mut none).unwrap();
-        assert!(Grid::new(&slot, filled.finish(), &[]).is_some());
-    }
-}
+mod tests;

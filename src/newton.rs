@@ -164,3 +164,6 @@ fn tangent<S: Scalar>() -> S {
     // √ε, as a constant of each type.
     S::from_f64(if S::EPSILON.to_f64() > 1e-10 { 3.5e-4 } else { 1.5e-8 })
 }
+
+#[cfg(test)]
+mod tests;

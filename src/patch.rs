@@ -462,3 +462,6 @@ fn first_difference<P: Point>(points: &[P], stride: usize, factor: P::Scalar, me
 }
 
 type V<P> = <<P as Point>::Scalar as Scalar>::Vec3;
+
+#[cfg(test)]
+mod tests;

@@ -325,3 +325,6 @@ impl<'m, P: Point> Scene<'m, P> {
 fn control_box<P: Point>(net: &Net<'_, P>) -> Aabb<P::Scalar> {
     net.points().iter().fold(Aabb::EMPTY, |all, p| all.with(p.position()))
 }
+
+#[cfg(test)]
+mod tests;

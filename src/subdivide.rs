@@ -269,3 +269,6 @@ fn direction_to_halve<S: Scalar>(measure: &Measure<S>, levels: [u32; 2], depth: 
         (false, false) => None,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -478,3 +478,6 @@ impl<P: Point> Net<'_, P> {
 pub(crate) const SHEAR: f64 = 1.7321;
 
 type V<P> = <<P as Point>::Scalar as Scalar>::Vec3;
+
+#[cfg(test)]
+mod tests;

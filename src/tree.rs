@@ -80,7 +80,7 @@ impl<'m, S: Scalar> Descent<'m, S> {
         let mut patches_left = limits.patches.saturating_sub(work.patches_tested);
         // Ends: `inner + leaf` grows with each step.
         let found = loop {
-            let Some(&below) = self.links.get(inner + leaf) else {
+            let Some(&below) = self.links.get(inner.saturating_add(leaf)) else {
                 break Ok(None);
             };
             if below == 1 {
@@ -117,3 +117,6 @@ impl<'m, S: Scalar> Descent<'m, S> {
         found
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -59,3 +59,6 @@ fn reaches<S: Scalar>(crossing: &Crossing<S>, range: &DepthRange<S>) -> bool {
             None => true,
         }
 }
+
+#[cfg(test)]
+mod tests;

@@ -151,3 +151,6 @@ impl<'m, S: Scalar> Walk<'m, S> {
         Some(Ok(found))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -27,6 +27,14 @@ pub struct Model {
 }
 
 impl Model {
+    /// A model of these surfaces, numbered in their order.
+    pub fn numbered(mut surfaces: Vec<ModelSurface>) -> Model {
+        for (number, surface) in surfaces.iter_mut().enumerate() {
+            surface.number = number;
+        }
+        Model { surfaces }
+    }
+
     /// The smallest box around all control points; `None` without any.
     pub fn control_box(&self) -> Option<ControlBox> {
         let mut points = self.surfaces.iter().flat_map(|surface| &surface.points);

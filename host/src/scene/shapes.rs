@@ -38,17 +38,9 @@ fn polynomial(degree_u: usize, degree_v: usize, points: Vec<[f64; 3]>) -> ModelS
     }
 }
 
-/// A model of these surfaces, numbered in their order.
-fn numbered(mut surfaces: Vec<ModelSurface>) -> Model {
-    for (number, surface) in surfaces.iter_mut().enumerate() {
-        surface.number = number;
-    }
-    Model { surfaces }
-}
-
 /// A model of one surface.
 pub fn single(surface: ModelSurface) -> Model {
-    numbered(vec![surface])
+    Model::numbered(vec![surface])
 }
 
 /// The bilinear surface with these corners, in the order (u, v) = (0, 0), (0, 1), (1, 0), (1, 1).
@@ -137,14 +129,14 @@ pub fn sphere(centre: [f64; 3], radius: f64) -> Model {
         let profile = arc(4, number).map(|[x, y, w]| [radius * x, radius * y, w]);
         surfaces.extend(revolve(centre, &profile, 4));
     }
-    numbered(surfaces)
+    Model::numbered(surfaces)
 }
 
 /// An open cylinder about the vertical axis through `centre`, of `height` half above and half below: 4 surfaces of
 /// degrees 1 along the axis (u, upwards) and 2 around it.
 pub fn cylinder(centre: [f64; 3], radius: f64, height: f64) -> Model {
     let profile = [[radius, -0.5 * height, 1.0], [radius, 0.5 * height, 1.0]];
-    numbered(revolve(centre, &profile, 4))
+    Model::numbered(revolve(centre, &profile, 4))
 }
 
 /// A torus about the vertical axis through `centre`: the circle of radius `minor` swept along that of radius `major`, of
@@ -155,7 +147,7 @@ pub fn torus(centre: [f64; 3], major: f64, minor: f64, around: usize, across: us
         let profile = arc(across, number).map(|[x, y, w]| [major + minor * x, minor * y, w]);
         surfaces.extend(revolve(centre, &profile, around));
     }
-    numbered(surfaces)
+    Model::numbered(surfaces)
 }
 
 /// The same surface with degrees raised to `m` and `n`, each at least its own (Farin, section 5.1).

@@ -1,0 +1,39 @@
+use super::*;
+use crate::bernstein::Basis;
+use crate::frame::{Aabb, Frame};
+use crate::ray::Interval;
+use crate::surface::{Net, Plain};
+
+/// The sheet z = 0 over the square of side 1/2 about 0, as a graph of u and v.
+const SHEET: [Plain<f64>; 4] =
+    [Plain([-0.25, -0.25, 0.0]), Plain([-0.25, 0.25, 0.0]), Plain([0.25, -0.25, 0.0]), Plain([0.25, 0.25, 0.0])];
+
+fn straight_down(x: f64, y: f64) -> Result<Option<Root<f64>>, Limit> {
+    let frame = Frame::new(Aabb { low: [-0.5; 3], high: [0.5; 3] });
+    let ray = frame.ray([x, y, 2.0], [0.0, 0.0, -1.0]).unwrap();
+    let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
+    let net = Net::new(1, 1, &SHEET).unwrap();
+    let surface = Surface { number: 0, net, bend: net.bend() };
+    let (limits, mut work) = (Limits::default(), Work::default());
+    let (mut flat, mut basis) = (heapless::Vec::<_, 4>::new(), Basis::<f64, 2>::new());
+    Solver::new(&surface, &planes, &limits, &mut flat, &mut basis.view()).solve([0.5; 2], &mut work)
+}
+
+/// Just beyond the edge is on it, by as much as the ray can tell; farther is not.
+#[test]
+fn the_edge_is_as_wide_as_the_tolerance() {
+    let tolerance = Limits::<f64>::default().tolerance;
+    for (beyond, found) in [(0.0, true), (0.5 * tolerance, true), (10.0 * tolerance, false), (1e-3, false)] {
+        for sign in [-1.0, 1.0] {
+            let at = sign * (0.25 + beyond);
+            for [x, y] in [[at, 0.03], [0.03, at]] {
+                let root = straight_down(x, y).unwrap();
+                assert_eq!(root.is_some(), found, "{beyond} {sign}");
+                if let Some(root) = root {
+                    let across = if y == 0.03 { root.u } else { root.v };
+                    assert_eq!(across, if sign < 0.0 { 0.0 } else { 1.0 });
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! The scene with a search that knows where its surfaces are.
+
+extern crate std;
+
+use super::*;
+use crate::surface::Plain;
+use std::vec;
+use std::vec::Vec;
+
+/// Sheets across z at these heights, over the square of side 1 about 0.
+fn with_sheets<R>(heights: &[f64], with: impl FnOnce(&Scene<'_, Plain<f64>>) -> R) -> R {
+    let points: Vec<[Plain<f64>; 4]> =
+        heights.iter().map(|&z| [[-0.5, -0.5, z], [-0.5, 0.5, z], [0.5, -0.5, z], [0.5, 0.5, z]].map(Plain)).collect();
+    let nets: Vec<_> = points.iter().map(|p| Net::new(1, 1, p).unwrap()).collect();
+    let (mut points, mut surfaces) = (vec![Plain::EMPTY; 4 * nets.len()], vec![SurfaceSlot::EMPTY; nets.len()]);
+    let (mut offsets, mut references) = (vec![0; 1000], vec![0; 1000]);
+    let memory = SceneMemory {
+        points: &mut points,
+        surfaces: &mut surfaces,
+        offsets: &mut offsets,
+        references: &mut references,
+    };
+    with(&Scene::build(&nets, &SceneOptions::default(), memory).unwrap())
+}
+
+/// A search that knows the sheets' depths, and notes which surfaces it was asked about.
+fn search(
+    scene: &Scene<'_, Plain<f64>>,
+    interval: &Interval<f64>,
+    limits: &Limits<f64>,
+    asked: &mut Vec<u32>,
+) -> Result<Option<Hit<f64>>, GaveUp<f64>> {
+    let ray = scene.ray([0.1, 0.2, -4.0], [0.0, 0.0, 2.0]).unwrap();
+    scene.closest(&ray, interval, limits, &mut Work::default(), |surface, planes, range, _| {
+        asked.push(surface.number);
+        let depth = planes.point(&surface.net.points()[0].0).depth;
+        let inside = range.min <= depth && depth <= range.max;
+        Ok(inside.then_some(Root { u: 0.5, v: 0.5, depth, grazing: false }))
+    })
+}
+
+#[test]
+fn the_closest_of_many_wins_and_what_is_behind_it_is_left_alone() {
+    let heights = [0.9, -0.3, 0.5, -0.8, 0.2];
+    with_sheets(&heights, |scene| {
+        let (limits, mut asked) = (Limits::default(), vec![]);
+        let hit = search(scene, &Interval::ahead(), &limits, &mut asked).unwrap().unwrap();
+        assert_eq!((hit.surface, hit.t), (3, 1.6));
+        assert!(asked.len() < heights.len() && asked.contains(&3), "{asked:?}");
+        // Each surface is asked at most once, and within an interval only those that it reaches.
+        let number = asked.len();
+        asked.sort();
+        asked.dedup();
+        assert_eq!(asked.len(), number);
+        asked.clear();
+        let hit = search(scene, &Interval::new(1.9, 2.05).unwrap(), &limits, &mut asked).unwrap();
+        assert_eq!((hit, asked.as_slice()), (None, &[][..]));
+        let hit = search(scene, &Interval::new(1.7, 100.0).unwrap(), &limits, &mut asked).unwrap().unwrap();
+        assert_eq!(hit.surface, 1);
+        // Behind the origin.
+        let hit = search(scene, &Interval::new(-9.0, -1.0).unwrap(), &limits, &mut asked).unwrap();
+        assert_eq!(hit, None);
+    });
+}
+
+#[test]
+fn of_equal_depths_the_lower_number_wins() {
+    for heights in [[0.0, 0.0, 0.5, 0.0], [0.25, 0.0, 0.0, 0.0]] {
+        with_sheets(&heights, |scene| {
+            let hit = search(scene, &Interval::ahead(), &Limits::default(), &mut vec![]).unwrap().unwrap();
+            assert_eq!(hit.surface, heights.iter().position(|&z| z == 0.0).unwrap() as u32);
+        });
+    }
+}
+
+#[test]
+fn budgets_of_the_scene_are_named_and_carry_the_best_so_far() {
+    with_sheets(&[0.9, -0.3, 0.5, -0.8, 0.2], |scene| {
+        let none = Limits { surfaces: 0, ..Limits::default() };
+        let gave_up = search(scene, &Interval::ahead(), &none, &mut vec![]).unwrap_err();
+        assert_eq!(gave_up, GaveUp { limit: Limit::Surfaces, best: None });
+        let none = Limits { voxels: 0, ..Limits::default() };
+        let gave_up = search(scene, &Interval::ahead(), &none, &mut vec![]).unwrap_err();
+        assert_eq!(gave_up, GaveUp { limit: Limit::Voxels, best: None });
+    });
+    // Two sheets in one voxel: the first found is no answer yet.
+    with_sheets(&[0.0, -1e-9], |scene| {
+        let one = Limits { surfaces: 1, ..Limits::default() };
+        let gave_up = search(scene, &Interval::ahead(), &one, &mut vec![]).unwrap_err();
+        assert_eq!((gave_up.limit, gave_up.best.map(|hit| hit.surface)), (Limit::Surfaces, Some(0)));
+    });
+}
+
+#[test]
+fn bad_surfaces_are_named_and_an_empty_scene_is_missed() {
+    let nan = [Plain([0.0, f64::NAN, 0.0]); 4];
+    let good = [Plain([0.0; 3]); 4];
+    let nets = [Net::new(1, 1, &good).unwrap(), Net::new(1, 1, &nan).unwrap()];
+    let memory = SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] };
+    let refused = Scene::build(&nets, &SceneOptions::default(), memory).err();
+    assert_eq!(refused, Some(SceneError::Surface { surface: 1, error: NetError::NotFinite(0) }));
+    with_sheets(&[], |scene| {
+        assert!(scene.is_empty() && scene.surface(0).is_none());
+        let ray = scene.ray([0.0, 0.0, -1.0], [0.0, 0.0, 1.0]).unwrap();
+        let found = scene.closest(&ray, &Interval::ahead(), &Limits::default(), &mut Work::default(), |_, _, _, _| {
+            panic!("there is nothing to search")
+        });
+        assert_eq!(found, Ok(None));
+    });
+}

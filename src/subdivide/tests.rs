@@ -1,0 +1,61 @@
+use super::*;
+use crate::frame::Aabb;
+use crate::surface::Plain;
+
+fn measure(bend_u: f64, bend_v: f64, sides: [f64; 2]) -> Measure<f64> {
+    let points = [[0.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0]].map(Plain);
+    let mut measure = Measure::of(&Net::new(1, 1, &points).unwrap(), 0.0);
+    (measure.bend_u, measure.bend_v, measure.sides) = (bend_u, bend_v, sides);
+    measure
+}
+
+#[test]
+fn the_more_bent_direction_is_halved_and_the_longer_of_straight_ones() {
+    assert_eq!(direction_to_halve(&measure(2.0, 1.0, [1.0, 9.0]), [0, 0], 3), Some(true));
+    assert_eq!(direction_to_halve(&measure(1.0, 2.0, [9.0, 1.0]), [0, 0], 3), Some(false));
+    assert_eq!(direction_to_halve(&measure(0.0, 0.0, [1.0, 2.0]), [0, 0], 3), Some(false));
+    assert_eq!(direction_to_halve(&measure(0.0, 0.0, [2.0, 1.0]), [0, 0], 3), Some(true));
+    // At its depth a direction leaves it to the other; at both there is nothing more to do.
+    assert_eq!(direction_to_halve(&measure(2.0, 1.0, [1.0; 2]), [3, 0], 3), Some(false));
+    assert_eq!(direction_to_halve(&measure(1.0, 2.0, [1.0; 2]), [0, 3], 3), Some(true));
+    assert_eq!(direction_to_halve(&measure(1.0, 2.0, [1.0; 2]), [3, 3], 3), None);
+}
+
+/// A saddle has no bend in u nor in v, only twist: it is halved all the same.
+#[test]
+fn a_saddle_is_halved_until_its_twist_is_flat() {
+    let points = [[0.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, 0.5]].map(Plain);
+    let net = Net::new(1, 1, &points).unwrap();
+    let frame = Frame::new(Aabb { low: [0.0; 3], high: [0.5; 3] });
+    let mut patches = [Patch::EMPTY; 64];
+    let mut first = [0; 2];
+    let mut scratch = SubdivideScratch::<Plain<f64>, 4>::new();
+    let twist =
+        |flatness: f64, patches: &mut [Patch<f64>], first: &mut [u32], view: &mut SubdivideScratchView<'_, _>| {
+            let options = Subdivision { flatness, ..Default::default() };
+            let memory = PatchMemory { patches, first };
+            let (patches, tree) = subdivide([net].into_iter(), &frame, &options, view, memory, None).unwrap();
+            assert!(tree.is_none());
+            patches.all().len()
+        };
+    // A quarter of 0.5 at the corners; a halving in each direction leaves a quarter of that.
+    let diagonal = frame.diagonal();
+    assert_eq!(twist(0.1251 / diagonal, &mut patches, &mut first, &mut scratch.view()), 1);
+    assert_eq!(twist(0.1249 / diagonal, &mut patches, &mut first, &mut scratch.view()), 2);
+    assert_eq!(twist(0.0313 / diagonal, &mut patches, &mut first, &mut scratch.view()), 4);
+    assert_eq!(twist(0.0079 / diagonal, &mut patches, &mut first, &mut scratch.view()), 16);
+    assert_eq!(first, [0, 16]);
+}
+
+#[test]
+fn surfaces_beyond_the_memory_are_not_there() {
+    let slots = [Patch::<f32>::EMPTY; 3];
+    let patches = Patches::new(&slots, &[0, 2, 3]);
+    assert_eq!(patches.of_surface(0).map(<[_]>::len), Some(2));
+    assert_eq!(patches.of_surface(1).map(<[_]>::len), Some(1));
+    assert!(patches.of_surface(2).is_none());
+    // Ends before begins, and ends beyond the slots.
+    assert!(Patches::new(&slots, &[2, 0]).of_surface(0).is_none());
+    assert!(Patches::new(&slots, &[0, 4]).of_surface(0).is_none());
+    assert!(Patches::new(&slots, &[]).of_surface(0).is_none());
+}

@@ -1,0 +1,235 @@
+//! Budgets: never more work than they say, giving up names the limit and never looks like a miss, more never finds less.
+
+mod common;
+
+use common::{Kind, Prepared, direction};
+use patchray::limits::{Extent, GaveUp, Limit, Limits, Work};
+use patchray::method::newton_coherent::Remembered;
+use patchray::method::{Scratch, newton, newton_coherent};
+use patchray::ray::{Hit, Interval, Ray};
+use patchray::scalar::Scalar;
+use patchray::surface::Plain;
+use patchray_host::scene::camera::Camera;
+use patchray_host::scene::shapes::Random;
+use patchray_host::scene::teapot;
+
+type Answer<S> = Result<Option<Hit<S>>, GaveUp<S>>;
+
+/// Which method, and for the coherent one what memory it starts with.
+#[derive(Clone, Copy, Debug)]
+enum Method<'r, S> {
+    Newton,
+    Coherent(&'r [Remembered<S>]),
+}
+
+const LINE: u32 = 5;
+
+fn trace<P: Kind>(
+    prepared: &Prepared<P>,
+    method: Method<'_, P::Scalar>,
+    ray: &Ray<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+) -> (Answer<P::Scalar>, Work, Vec<Remembered<P::Scalar>>) {
+    let scene = prepared.scene();
+    let (patches, interval) = (prepared.patches(), Interval::ahead());
+    let (mut scratch, mut work) = (Scratch::<P, 16, 256>::new(), Work::default());
+    let view = &mut scratch.view();
+    match method {
+        Method::Newton => {
+            let tree = prepared.tree();
+            let answer = newton::closest(&scene, &patches, &tree, ray, &interval, limits, view, &mut work);
+            (answer, work, vec![])
+        }
+        Method::Coherent(memory) => {
+            let (mut memory, grids) = (memory.to_vec(), prepared.grids());
+            let answer = newton_coherent::closest(
+                &scene,
+                &patches,
+                &grids,
+                &mut memory,
+                LINE,
+                ray,
+                &interval,
+                limits,
+                view,
+                &mut work,
+            );
+            (answer, work, memory)
+        }
+    }
+}
+
+/// A budget by name: how to set it, and the counter that it bounds.
+type Budget<S> = (Limit, fn(&mut Limits<S>, u32), fn(&Work) -> u32);
+
+fn budgets<S: Scalar>() -> [Budget<S>; 5] {
+    [
+        (Limit::Surfaces, |l, n| l.surfaces = n, |w| w.surfaces_tested),
+        (Limit::Nodes, |l, n| l.nodes = n, |w| w.nodes_visited),
+        (Limit::Patches, |l, n| l.patches = n, |w| w.patches_tested),
+        (Limit::Voxels, |l, n| l.voxels = n, |w| w.voxels_visited),
+        (Limit::NewtonSteps, |l, n| l.newton_steps = n, |w| w.newton_steps),
+    ]
+}
+
+/// Rays of the common view and others through the teapot.
+fn rays<S: Scalar>(prepared: &Prepared<Plain<S>>, number: usize) -> Vec<Ray<S>>
+where
+    Plain<S>: Kind<Scalar = S>,
+{
+    let scene = prepared.scene();
+    let camera: Camera = teapot::common_scene().unwrap().description.camera;
+    let view = camera.view([64, 64]);
+    let mut random = Random(111);
+    let make = |k: usize| {
+        let (origin, d) = if k.is_multiple_of(2) {
+            // Consecutive pixels of a scan line, so that coherence has something to work with.
+            (view.eye, view.direction((k as u32 / 2) % 64, 8 + (k as u32 / 128) % 48))
+        } else {
+            let at = random.point(1.5);
+            let d = direction(&mut random, 0.0);
+            (common::add([at[0], at[1], at[2] + 1.5], -5.0, d), d)
+        };
+        scene.ray(origin.map(S::from_f64), d.map(S::from_f64)).unwrap()
+    };
+    (0..number).map(make).collect()
+}
+
+fn every_budget<S: Scalar>()
+where
+    Plain<S>: Kind<Scalar = S>,
+{
+    let prepared = Prepared::<Plain<S>>::of(&teapot::model().unwrap());
+    let limits = Limits::<S>::default();
+    let mut gave_up = [0_u32; 5];
+    let mut with_best = 0;
+    let mut remembered = vec![Remembered::EMPTY; 32];
+    for (k, ray) in rays(&prepared, 120).iter().enumerate() {
+        let before = remembered.clone();
+        for method in [Method::Newton, Method::Coherent(&before)] {
+            let (full, used, memory) = trace(&prepared, method, ray, &limits);
+            let full = full.expect("the default budgets are far from any ray of the teapot");
+            if k % 2 == 0 && !memory.is_empty() {
+                remembered = memory;
+            }
+            for (b, (limit, set, counter)) in budgets::<S>().into_iter().enumerate() {
+                let needed = counter(&used);
+                let mut found_before = false;
+                for n in (0..needed.min(40)).chain((40..needed).step_by(7)).chain(needed..needed + 2) {
+                    let mut small = limits;
+                    set(&mut small, n);
+                    let (answer, work, _) = trace(&prepared, method, ray, &small);
+                    assert!(counter(&work) <= n, "{limit}: {} of {n}", counter(&work));
+                    if n >= needed {
+                        assert_eq!((answer, work), (Ok(full), used));
+                        continue;
+                    }
+                    // Short of what the ray needs: neither a hit nor a miss, and it says why.
+                    let short = answer.expect_err("a budget that is too small is not an answer");
+                    assert_eq!((short.limit, counter(&work)), (limit, n));
+                    gave_up[b] += 1;
+                    with_best += u32::from(short.best.is_some());
+                    // What was found by then is a root of the ray, never nearer than the answer; more budget never loses it.
+                    assert!(short.best.is_some() || !found_before);
+                    found_before = short.best.is_some();
+                    if let (Some(best), Some(full)) = (short.best, full) {
+                        assert!(best.t >= full.t);
+                    }
+                    assert!(short.best.is_none() || full.is_some());
+                    let others = budgets::<S>();
+                    assert!(others.iter().all(|(_, _, counter)| counter(&work) <= counter(&used)));
+                }
+            }
+        }
+    }
+    println!("gave up on {gave_up:?}, {with_best} times with a hit so far");
+    assert!(gave_up.iter().all(|&n| n > 100) && with_best > 100);
+}
+
+#[test]
+fn every_budget_from_nothing_to_enough() {
+    every_budget::<f32>();
+    every_budget::<f64>();
+}
+
+/// `Limits::worst_case` is above what any of many rays takes, in every counter.
+#[test]
+fn no_ray_passes_the_worst_case() {
+    fn check<S: Scalar>()
+    where
+        Plain<S>: Kind<Scalar = S>,
+    {
+        let prepared = Prepared::<Plain<S>>::of(&teapot::model().unwrap());
+        let limits = Limits::<S>::default();
+        let extent = Extent {
+            surfaces: 32,
+            patches: prepared.patches.len() as u32,
+            scene_voxels: prepared.scene().longest_walk(),
+            ..Default::default()
+        };
+        let plain = limits.worst_case(&Extent { nodes: prepared.nodes.len() as u32, ..extent });
+        let coherent =
+            limits.worst_case(&Extent { surface_voxels: prepared.grids().longest_walks(), walks: 2, ..extent });
+        let mut hardest = [Work::default().counts(); 2];
+        let mut remembered = vec![Remembered::EMPTY; 32];
+        for ray in rays(&prepared, 6000) {
+            let (_, work, _) = trace(&prepared, Method::Newton, &ray, &limits);
+            let (answer, coherent, memory) = trace(&prepared, Method::Coherent(&remembered), &ray, &limits);
+            assert!(answer.is_ok());
+            remembered = memory;
+            for (most, work) in hardest.iter_mut().zip([work, coherent]) {
+                for (most, count) in most.iter_mut().zip(work.counts()) {
+                    *most = (*most).max(count);
+                }
+            }
+        }
+        for (name, (hardest, worst)) in ["newton", "newton-coherent"].iter().zip(hardest.iter().zip([plain, coherent]))
+        {
+            for (k, (&hardest, worst)) in hardest.iter().zip(worst.counts()).enumerate() {
+                println!("{name} {}: hardest {hardest}, worst case {worst}", Work::NAMES[k]);
+                assert!(hardest <= worst, "{name} {}: {hardest} {worst}", Work::NAMES[k]);
+            }
+        }
+    }
+    check::<f32>();
+    check::<f64>();
+}
+
+/// A scene whose every part one ray meets: the bound is reached where it can be, so it is no idle number.
+#[test]
+fn the_worst_case_is_come_near() {
+    use patchray_host::scene::model::Model;
+    use patchray_host::scene::shapes::parallelogram;
+    // A tower of forty flat sheets across the ray, one patch each: all surfaces, patches and nearly all voxels are met.
+    let sheets = (0..40).map(|k| parallelogram([-0.5, -0.5, f64::from(k)], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]));
+    let prepared = Prepared::<Plain<f64>>::of(&Model::numbered(sheets.collect()));
+    let limits = Limits::default();
+    let ray = prepared.scene().ray([0.1, 0.05, 50.0], [0.0, 0.0, -1.0]).unwrap();
+    let (scene, patches, tree) = (prepared.scene(), prepared.patches(), prepared.tree());
+    let extent = Extent {
+        surfaces: 40,
+        nodes: prepared.nodes.len() as u32,
+        patches: prepared.patches.len() as u32,
+        scene_voxels: scene.longest_walk(),
+        ..Default::default()
+    };
+    let worst = limits.worst_case(&extent);
+    // The original method's search, but of no effect: a hit would end the way through the scene.
+    let mut work = Work::default();
+    let whole = Interval::new(-f64::INFINITY, f64::INFINITY).unwrap();
+    let no_pruning = scene.closest(&ray, &whole, &limits, &mut work, |surface, planes, _, work| {
+        let mut descent = tree.of_surface(&patches, surface.number as usize).unwrap();
+        while let Some((patch, crossing)) = descent.next_patch(planes, &limits, work)? {
+            let start = patch.parallelogram(&crossing).unwrap();
+            work.intersection_points += u32::from(common::solve(surface, planes, start, &limits, work)?.is_some());
+        }
+        Ok(None)
+    });
+    assert_eq!(no_pruning, Ok(None));
+    assert_eq!((work.surfaces_tested, worst.surfaces_tested), (40, 40));
+    assert_eq!((work.patches_tested, worst.patches_tested), (40, 40));
+    assert_eq!(work.intersection_points, 40);
+    let along = work.voxels_visited as f64 / worst.voxels_visited as f64;
+    println!("voxels: {} of {}", work.voxels_visited, worst.voxels_visited);
+    assert!(along > 0.9);
+}
