@@ -15,6 +15,9 @@ use patchray_host::scene::teapot;
 
 type Answer<S> = Result<Option<Hit<S>>, GaveUp<S>>;
 
+/// An answer, the work it took, and the memory it left.
+type Traced<S> = (Answer<S>, Work, Vec<Remembered<S>>);
+
 /// Which method, and for the coherent one what memory it starts with.
 #[derive(Clone, Copy, Debug)]
 enum Method<'r, S> {
@@ -29,7 +32,7 @@ fn trace<P: Kind>(
     method: Method<'_, P::Scalar>,
     ray: &Ray<P::Scalar>,
     limits: &Limits<P::Scalar>,
-) -> (Answer<P::Scalar>, Work, Vec<Remembered<P::Scalar>>) {
+) -> Traced<P::Scalar> {
     let scene = prepared.scene();
     let (patches, interval) = (prepared.patches(), Interval::ahead());
     let (mut scratch, mut work) = (Scratch::<P, 16, 256>::new(), Work::default());

@@ -16,6 +16,9 @@ use patchray_host::scene::teapot;
 
 type P4 = [f64; 4];
 
+/// An edge of a bicubic: its control points, and the (u, v) at `t` along it, `inset` from it.
+type Edge = ([usize; 4], fn(f64, f64) -> [f64; 2]);
+
 fn mix(a: P4, b: P4, t: f64) -> P4 {
     core::array::from_fn(|k| a[k] + (b[k] - a[k]) * t)
 }
@@ -313,7 +316,7 @@ fn normals_at_the_teapots_collapsed_edges_are_the_limit_from_inside() {
             let net = prepared.scene().surface(k).unwrap().net;
             let points = net.points();
             // Each edge: its control points, and a point (u, v) at `t` along it, `inset` from it.
-            let edges: [([usize; 4], fn(f64, f64) -> [f64; 2]); 4] = [
+            let edges: [Edge; 4] = [
                 ([0, 1, 2, 3], |t, inset| [inset, t]),
                 ([12, 13, 14, 15], |t, inset| [1.0 - inset, t]),
                 ([0, 4, 8, 12], |t, inset| [t, inset]),
