@@ -10,8 +10,8 @@
 
 use crate::arena::{Arena, Need};
 use crate::frame::Aabb;
+use crate::patch::Patches;
 use crate::scalar::Scalar;
-use crate::subdivide::Patches;
 
 /// The grid's header as a slot of lent memory.
 #[derive(Clone, Copy, Debug, PartialEq)]

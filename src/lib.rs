@@ -15,7 +15,8 @@
 //! use patchray::ray::Interval;
 //! use patchray::scene::{Scene, SceneMemory, SceneOptions, SurfaceSlot};
 //! use patchray::subdivide::{PatchMemory, SubdivideScratch, Subdivision, TreeMemory, subdivide};
-//! use patchray::surface::{Net, Plain};
+//! use patchray::surface::Net;
+//! use patchray::point::Plain;
 //!
 //! // A saddle: degrees 1 × 1, over the unit square. In firmware these arrays are statics.
 //! let points = [[0.0, 0.0, 0.0], [0.0, 1.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 0.0]].map(Plain::<f32>);
@@ -61,17 +62,21 @@ pub mod limits;
 pub mod arena;
 
 pub mod bernstein;
+pub mod point;
 pub mod surface;
 
 pub mod frame;
 
 pub mod planes;
 
+pub mod domain;
 pub mod patch;
 
-pub mod subdivide;
+pub mod measure;
 
 pub mod tree;
+
+pub mod subdivide;
 
 pub mod grid;
 pub mod walk;

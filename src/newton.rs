@@ -10,8 +10,9 @@
 use crate::bernstein::{self, BasisView, Full};
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::planes::{Planes, project_net};
+use crate::point::{Flat, Point};
 use crate::scalar::Scalar;
-use crate::surface::{Flat, Point, Surface};
+use crate::surface::Surface;
 use heapless::vec::VecView;
 
 /// A root: where a ray meets a surface.

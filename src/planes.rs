@@ -6,9 +6,10 @@
 //! √(f² + g²) so measured is at least the point's true distance from the ray, and at most √3 times it.
 
 use crate::bernstein::{BasisView, Full, Linear, Tuple};
+use crate::point::{Flat, Point};
 use crate::ray::{Axis, Interval};
 use crate::scalar::Scalar;
-use crate::surface::{Flat, Net, Point};
+use crate::surface::Net;
 use heapless::vec::VecView;
 
 /// A stretch of a ray by depth: distance from the moved origin along the ray's steepest axis, in the frame.
@@ -220,7 +221,7 @@ pub fn project_net<'o, P: Point>(
 mod tests {
     use super::*;
     use crate::frame::{Aabb, Frame};
-    use crate::surface::{Plain, Weighted};
+    use crate::point::{Plain, Weighted};
 
     #[test]
     fn points_of_the_ray_project_to_zero_whatever_the_steepest_axis() {

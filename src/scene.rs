@@ -10,9 +10,10 @@ use crate::grid::{Grid, GridSlot};
 use crate::limits::{GaveUp, Limit, Limits, Work, spend};
 use crate::newton::Root;
 use crate::planes::{DepthRange, Planes};
+use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray, RayError};
 use crate::scalar::Scalar;
-use crate::surface::{Net, NetError, Point, Surface};
+use crate::surface::{Net, NetError, Surface};
 
 /// A surface as a slot of lent memory.
 #[derive(Clone, Copy, Debug, PartialEq)]

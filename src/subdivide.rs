@@ -6,10 +6,13 @@
 
 use crate::arena::{Arena, Need};
 use crate::bernstein::Full;
+use crate::domain::{Domain, MAX_LEVEL};
 use crate::frame::{Frame, PADDING};
-use crate::patch::{Domain, MAX_LEVEL, Measure, Parallelepiped, Patch};
+use crate::measure::Measure;
+use crate::patch::{Parallelepiped, Patch, Patches};
+use crate::point::Point;
 use crate::scalar::Scalar;
-use crate::surface::{Net, Point};
+use crate::surface::Net;
 use crate::tree::Tree;
 use heapless::vec::{Vec, VecView};
 
@@ -95,38 +98,6 @@ impl core::fmt::Display for SubdivideError {
 }
 
 impl core::error::Error for SubdivideError {}
-
-/// The patches of a scene: a view of lent memory.
-#[derive(Clone, Copy, Debug)]
-pub struct Patches<'m, S> {
-    patches: &'m [Patch<S>],
-    first: &'m [u32],
-}
-
-impl<'m, S: Scalar> Patches<'m, S> {
-    /// The view of memory that was filled before, such as a table in flash.
-    pub fn new(patches: &'m [Patch<S>], first: &'m [u32]) -> Self {
-        Patches { patches, first }
-    }
-
-    /// All patches, surface by surface.
-    pub fn all(&self) -> &'m [Patch<S>] {
-        self.patches
-    }
-
-    /// Where a surface's patches begin and end.
-    #[inline]
-    pub(crate) fn range(&self, surface: usize) -> Option<(usize, usize)> {
-        Some((*self.first.get(surface)? as usize, *self.first.get(surface + 1)? as usize))
-    }
-
-    /// The patches of one surface; `None` if the memory does not hold them.
-    #[inline]
-    pub fn of_surface(&self, surface: usize) -> Option<&'m [Patch<S>]> {
-        let (first, end) = self.range(surface)?;
-        self.patches.get(first..end)
-    }
-}
 
 /// What is still to be done on the way through a tree.
 #[derive(Clone, Copy, Debug)]
@@ -250,7 +221,7 @@ pub fn subdivide<'m, 'n, P: Point>(
         return Err(SubdivideError::Memory(needs));
     }
     let tree = wants_tree.then(|| Tree::new(nodes.finish(), links.finish()));
-    Ok((Patches { patches: patches.finish(), first: first.finish() }, tree))
+    Ok((Patches::new(patches.finish(), first.finish()), tree))
 }
 
 /// Whether to halve in u (true) or in v, `None` if both directions are at their depth.

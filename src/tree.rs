@@ -4,10 +4,10 @@
 //! parallelepiped, and a leaf's is its patch's. Filled by [`subdivide`](crate::subdivide::subdivide).
 
 use crate::limits::{Limit, Limits, Work};
+use crate::patch::Patches;
 use crate::patch::{Met, Parallelepiped, Patch};
 use crate::planes::Planes;
 use crate::scalar::Scalar;
-use crate::subdivide::Patches;
 
 /// The binary trees of a scene, in pre-order: a view of lent memory.
 ///

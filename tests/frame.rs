@@ -6,10 +6,10 @@ use common::{Kind, Prepared, direction};
 use patchray::limits::{Limits, Work};
 use patchray::method::newton_coherent::Remembered;
 use patchray::method::{Scratch, newton, newton_coherent};
+use patchray::point::Plain;
 use patchray::ray::{Hit, Interval};
 use patchray::scalar::Scalar;
 use patchray::subdivide::Subdivision;
-use patchray::surface::Plain;
 use patchray_host::scene::shapes::Random;
 use patchray_host::scene::teapot;
 

@@ -10,14 +10,15 @@ use patchray::grid::{GridError, GridMemory, GridNeeds, GridOptions, GridSlot, Gr
 use patchray::limits::{Acceptance, GaveUp, Limit, Limits, Work};
 use patchray::method::newton_coherent::Remembered;
 use patchray::method::{Scratch, newton, newton_coherent};
+use patchray::patch::Patches;
 use patchray::patch::{Parallelepiped, Patch};
+use patchray::point::{Plain, Point, Weighted};
 use patchray::ray::{Hit, Interval};
 use patchray::scalar::Scalar;
 use patchray::scene::{Scene, SceneError, SceneMemory, SceneNeeds, SceneOptions, SurfaceSlot};
 use patchray::subdivide::{
-    PatchMemory, Patches, SubdivideError, SubdivideNeeds, SubdivideScratch, Subdivision, TreeMemory, subdivide,
+    PatchMemory, SubdivideError, SubdivideNeeds, SubdivideScratch, Subdivision, TreeMemory, subdivide,
 };
-use patchray::surface::{Plain, Point, Weighted};
 use patchray::tree::Tree;
 use patchray_host::scene::model::Model;
 use patchray_host::scene::shapes::{Random, bumpy, sphere};

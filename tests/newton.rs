@@ -9,9 +9,10 @@ use patchray::limits::{Limit, Limits, Work};
 use patchray::method::Scratch;
 use patchray::newton::{Root, Solver};
 use patchray::planes::Planes;
+use patchray::point::{Plain, Point, Weighted};
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
-use patchray::surface::{Plain, Point, Surface, Weighted};
+use patchray::surface::Surface;
 use patchray_host::scene::model::{Model, ModelSurface};
 use patchray_host::scene::shapes::{Random, bumpy, elevate, paraboloid, parallelogram, single, sphere};
 

@@ -8,10 +8,10 @@ mod common;
 use common::{Kind, Prepared, add, cross, direction, hard_surfaces, index, is_rational, norm};
 use patchray::bernstein::Basis;
 use patchray::limits::{Limits, Work};
+use patchray::point::{Plain, Weighted};
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
 use patchray::subdivide::Subdivision;
-use patchray::surface::{Plain, Weighted};
 use patchray_host::scene::model::Model;
 use patchray_host::scene::shapes::{Random, paraboloid, parallelogram, single};
 

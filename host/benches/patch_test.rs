@@ -3,9 +3,9 @@
 mod common;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use patchray::point::Plain;
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
-use patchray::surface::Plain;
 use patchray_host::lower::{FromFile, Lowered, Preparation, Stages};
 use std::hint::black_box;
 

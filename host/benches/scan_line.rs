@@ -4,7 +4,7 @@ mod common;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use patchray::limits::Limits;
-use patchray::surface::{Plain, Weighted};
+use patchray::point::{Plain, Weighted};
 use patchray_host::lower::{FromFile, Lowered, Preparation, Stages};
 use patchray_host::method::{Newton, NewtonCoherent};
 use patchray_host::scanline::{MethodTracer, Tally, Tracer};

@@ -8,11 +8,13 @@ use patchray::bernstein::MAX_DEGREE;
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::method::Scratch;
 use patchray::method::newton_coherent::Remembered;
+use patchray::patch::Patches;
 use patchray::patch::{Parallelepiped, Patch};
+use patchray::point::{Plain, Point, Weighted};
 use patchray::scalar::Scalar;
 use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions, SurfaceSlot};
-use patchray::subdivide::{PatchMemory, Patches, SubdivideError, SubdivideScratch, Subdivision, TreeMemory, subdivide};
-use patchray::surface::{Net, Plain, Point, Weighted};
+use patchray::subdivide::{PatchMemory, SubdivideError, SubdivideScratch, Subdivision, TreeMemory, subdivide};
+use patchray::surface::Net;
 use patchray::tree::Tree;
 use thiserror::Error;
 

@@ -1,13 +1,14 @@
 //! The kernel's methods behind one face, so that what drives rays need not know which one it drives.
 
+use patchray::grid::Grids;
 use patchray::limits::{GaveUp, Limits, Work};
 use patchray::method::newton_coherent::{self, Remembered};
 use patchray::method::{ScratchView, newton};
+use patchray::patch::Patches;
+use patchray::point::Point;
 use patchray::ray::{Hit, Interval, Ray};
 use patchray::scene::Scene;
-use patchray::subdivide::Patches;
 use patchray::tree::Tree;
-use patchray::{grid::Grids, surface::Point};
 
 use crate::lower::Lowered;
 

@@ -1,6 +1,6 @@
 //! A lowered scene of whichever point type it needs: plain or weighted, `f32` or `f64`.
 
-use patchray::surface::{Plain, Weighted};
+use patchray::point::{Plain, Weighted};
 
 use crate::lower::{LowerError, Lowered, Stages, unfit};
 use crate::memory::Bytes;

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use patchray::domain::MAX_LEVEL;
 use patchray::limits::{Acceptance as KernelAcceptance, Limits};
-use patchray::patch::MAX_LEVEL;
 use patchray::scalar::Scalar;
 use patchray::subdivide::Subdivision;
 use serde::Serialize;

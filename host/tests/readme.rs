@@ -34,7 +34,7 @@ fn grouped(number: &Value) -> String {
     let digits = number.as_u64().expect("bytes are a whole number").to_string();
     let mut text = String::new();
     for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place) % 3 == 0 {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
             text.push(',');
         }
         text.push(digit);

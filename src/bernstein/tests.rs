@@ -1,7 +1,8 @@
 //! The parts of evaluation that the public face does not show apart.
 
 use super::*;
-use crate::surface::{Net, Plain, Point, Weighted};
+use crate::point::{Plain, Point, Weighted};
+use crate::surface::Net;
 use patchray_host::scene::shapes::Random;
 
 fn points<P: Point, const N: usize>(random: &mut Random) -> [P; N]

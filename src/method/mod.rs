@@ -9,8 +9,8 @@ mod starts;
 use crate::bernstein::{Basis, BasisView};
 use crate::newton::Root;
 use crate::planes::Planes;
+use crate::point::Point;
 use crate::scalar::Scalar;
-use crate::surface::Point;
 use heapless::vec::{Vec, VecView};
 
 /// What one thread needs per ray, whichever of Newton's methods it traces with. `ORDER` is the highest degree + 1, `POINTS`

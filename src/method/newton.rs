@@ -10,11 +10,12 @@ use super::starts::{First, from_patch};
 use super::{ScratchView, keep_closest};
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::newton::{Root, Solver};
+use crate::patch::Patches;
 use crate::planes::{DepthRange, Planes};
+use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::scene::Scene;
-use crate::subdivide::Patches;
-use crate::surface::{Point, Surface};
+use crate::surface::Surface;
 use crate::tree::Tree;
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.

@@ -16,13 +16,13 @@ use super::{ScratchView, keep_closest};
 use crate::grid::{Grid, Grids};
 use crate::limits::{Acceptance, GaveUp, Limit, Limits, Work};
 use crate::newton::{Root, Solver};
+use crate::patch::Patches;
 use crate::patch::{Crossing, Patch};
 use crate::planes::DepthRange;
+use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
-use crate::subdivide::Patches;
-use crate::surface::Point;
 use crate::sweep::sweep;
 use crate::verify::testing_ray;
 

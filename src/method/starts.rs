@@ -7,7 +7,7 @@
 use crate::limits::{Limit, Work};
 use crate::newton::{Root, Solver};
 use crate::patch::{Crossing, Patch};
-use crate::surface::Point;
+use crate::point::Point;
 
 /// Where to begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

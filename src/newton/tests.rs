@@ -1,8 +1,9 @@
 use super::*;
 use crate::bernstein::Basis;
 use crate::frame::{Aabb, Frame};
+use crate::point::Plain;
 use crate::ray::Interval;
-use crate::surface::{Net, Plain};
+use crate::surface::Net;
 
 /// The sheet z = 0 over the square of side 1/2 about 0, as a graph of u and v.
 const SHEET: [Plain<f64>; 4] =

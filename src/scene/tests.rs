@@ -3,7 +3,7 @@
 extern crate std;
 
 use super::*;
-use crate::surface::Plain;
+use crate::point::Plain;
 use std::vec;
 use std::vec::Vec;
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::frame::Aabb;
-use crate::surface::Plain;
+use crate::point::Plain;
 
 fn measure(bend_u: f64, bend_v: f64, sides: [f64; 2]) -> Measure<f64> {
     let points = [[0.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0]].map(Plain);

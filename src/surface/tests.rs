@@ -1,6 +1,7 @@
 //! What is a surface and what is not.
 
 use super::*;
+use crate::point::Weighted;
 
 #[test]
 fn what_is_no_surface_is_refused_by_name() {
@@ -15,7 +16,7 @@ fn what_is_no_surface_is_refused_by_name() {
         let mut bad_points = points;
         bad_points[4] = Weighted::new([0.0, bad, 0.0], 1.0);
         assert_eq!(Net::checked(1, 2, &bad_points).err(), Some(NetError::NotFinite(4)));
-        bad_points[4] = Weighted([0.0, 0.0, 0.0, bad]);
+        bad_points[4] = Weighted::new([0.0; 3], bad);
         assert_eq!(Net::checked(1, 2, &bad_points).err(), Some(NetError::NotFinite(4)));
     }
     for weight in [0.0, -0.0, -1.0] {

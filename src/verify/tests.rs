@@ -2,11 +2,13 @@ extern crate std;
 
 use super::*;
 use crate::arena::Arena;
+use crate::domain::Domain;
 use crate::frame::{Aabb, Frame};
 use crate::grid::GridSlot;
-use crate::patch::{Domain, Measure};
+use crate::measure::Measure;
+use crate::point::Plain;
 use crate::ray::Interval;
-use crate::surface::{Net, Plain};
+use crate::surface::Net;
 use std::vec::Vec;
 
 /// Sheets across z at these heights, each a patch of its own; of the last one the domain is the half beyond u = 1/2.

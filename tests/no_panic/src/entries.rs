@@ -8,18 +8,21 @@ use patchray::bernstein::{Basis, Jet, MAX_DEGREE};
 use patchray::frame::{Aabb, Frame};
 use patchray::grid::{Grid, GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::limits::{Extent, GaveUp, Limit, Limits, Work};
+use patchray::measure::Measure;
 use patchray::method::newton_coherent::Remembered;
 use patchray::method::{Scratch, newton, newton_coherent};
 use patchray::newton::{Root, Solver};
-use patchray::patch::{Crossing, Measure, Parallelepiped, Patch, Pierce};
+use patchray::patch::Patches;
+use patchray::patch::{Crossing, Parallelepiped, Patch, Pierce};
 use patchray::planes::{DepthRange, Planes, Projected, project_net};
+use patchray::point::{Plain, Point, Weighted};
 use patchray::ray::{Hit, Interval, Ray, RayError};
 use patchray::scalar::{Scalar, Vector3};
 use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions, SurfaceSlot};
 use patchray::subdivide::{
-    PatchMemory, Patches, SubdivideError, SubdivideScratch, Subdivided, Subdivision, TreeMemory, subdivide,
+    PatchMemory, SubdivideError, SubdivideScratch, Subdivided, Subdivision, TreeMemory, subdivide,
 };
-use patchray::surface::{Direction, Net, NetError, Plain, Point, Surface, Weighted};
+use patchray::surface::{Direction, Net, NetError, Surface};
 use patchray::tree::{Descent, Tree};
 use patchray::verify::testing_ray;
 use patchray::walk::{Voxel, Walk};

@@ -2,9 +2,11 @@
 
 use super::*;
 use crate::bernstein::{Basis, MAX_DEGREE};
+use crate::domain::MAX_LEVEL;
 use crate::frame::{Aabb, Frame, PADDING};
+use crate::planes::{CENTRE, DepthRange};
+use crate::point::{Plain, Weighted};
 use crate::ray::Interval;
-use crate::surface::{Plain, Weighted};
 use patchray_host::scene::shapes::{Random, bumpy};
 
 type V3 = <f64 as Scalar>::Vec3;

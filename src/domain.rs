@@ -1,0 +1,88 @@
+//! The parameter domain of a patch: a part of [0, 1]² by repeated halving.
+
+use crate::scalar::Scalar;
+
+/// How often a surface may be halved in each direction: domains are then exact in both number types, and fit 16 bits.
+pub const MAX_LEVEL: u32 = 14;
+
+/// A part of a surface's domain by repeated halving: `[i, i + 1] / 2^level` in each direction, held as `2^level + i`.
+/// Half-open, but for the last one, so that each (u, v) lies in exactly one patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Domain {
+    u: u16,
+    /// The top bit marks a patch that is not flat: it was kept because the depth ran out.
+    v: u16,
+}
+
+const ROUGH: u16 = 1 << 15;
+
+impl Domain {
+    /// The whole surface.
+    pub const WHOLE: Self = Domain { u: 1, v: 1 };
+
+    /// How often it was halved in u and in v.
+    pub fn levels(self) -> [u32; 2] {
+        [self.u, self.v & !ROUGH].map(level)
+    }
+
+    /// The halves in u, or in v.
+    pub(crate) fn halves(self, along_u: bool) -> [Self; 2] {
+        let Domain { u, v } = self;
+        [0, 1].map(|side| if along_u { Domain { u: u << 1 | side, v } } else { Domain { u, v: v << 1 | side } })
+    }
+
+    /// The same domain, marked as not flat.
+    pub(crate) fn rough(self) -> Self {
+        Domain { u: self.u, v: self.v | ROUGH }
+    }
+
+    /// Whether the patch is not flat: then every ray counts as critical there.
+    #[inline(always)]
+    pub fn is_rough(self) -> bool {
+        self.v & ROUGH != 0
+    }
+
+    /// `[u0, u1]` and `[v0, v1]`, exact.
+    pub fn bounds<S: Scalar>(self) -> [[S; 2]; 2] {
+        [self.u, self.v & !ROUGH].map(|index| {
+            let scale = S::ONE.times_power_of_two(-(level(index) as i32));
+            let first = u32::from(index) - (1 << level(index));
+            [S::from_u32(first) * scale, S::from_u32(first + 1) * scale]
+        })
+    }
+
+    /// Whether it holds (u, v); exactly one domain of a subdivision does, for any (u, v) in [0, 1]².
+    #[inline]
+    pub fn holds<S: Scalar>(self, u: S, v: S) -> bool {
+        // The finest interval that holds the parameter, then its ancestor at this domain's level.
+        let cells = 1_u32 << MAX_LEVEL;
+        let ancestor = |t: S, index: u16| {
+            let cell = (t * S::from_u32(cells)).to_u32().min(cells - 1);
+            (cells | cell) >> (MAX_LEVEL - level(index).min(MAX_LEVEL)) == u32::from(index)
+        };
+        ancestor(u, self.u) && ancestor(v, self.v & !ROUGH)
+    }
+
+    /// The parameters at (a, b) of the local coordinates, −1 to 1 across the domain.
+    #[inline(always)]
+    pub(crate) fn parameters<S: Scalar>(self, a: S, b: S) -> [S; 2] {
+        let at = |local: S, index: u16| {
+            let width = width::<S>(index);
+            // Index i of 2^level at the middle of its interval: (i + 1/2) · width − 1, the leading bit's 1.
+            (S::from_u32(u32::from(index)) + S::HALF * (local + S::ONE)) * width - S::ONE
+        };
+        [at(a, self.u), at(b, self.v & !ROUGH)]
+    }
+}
+
+#[inline(always)]
+fn level(index: u16) -> u32 {
+    15_u32.saturating_sub(index.leading_zeros())
+}
+
+/// 2^−level.
+#[inline(always)]
+fn width<S: Scalar>(index: u16) -> S {
+    // A power of two of at most 2^15 converts exactly, and so does its quotient.
+    S::ONE / S::from_u32(1 << level(index))
+}
