@@ -145,9 +145,11 @@ impl<S: Scalar> Frame<S> {
             return Err(RayError::ZeroDirection);
         }
         let distance = S::Vec3::from_array(origin).largest();
-        let farthest = (distance + self.reach) / speed;
-        let step = self.unscale / speed * S::EPSILON;
-        if !(farthest * S::from_u32(8)).is_finite() || !step.is_finite() || step < S::MIN_POSITIVE {
+        // t grows to (distance + reach) / speed, a few times over on the way, and a step of depth is unscale / speed; said
+        // without divisions, which cost more than all the rest here. A product that overflows or vanishes says the same.
+        let farthest = ((distance + self.reach) * S::from_u32(8)).greater(self.unscale);
+        let held = farthest < S::MAX * speed && self.unscale * S::EPSILON >= S::MIN_POSITIVE * speed;
+        if !held {
             return Err(RayError::Unrepresentable);
         }
         Ok(Ray { origin, direction, axis, far: distance > self.reach * S::from_u32(NEAR) })

@@ -172,63 +172,66 @@ struct MethodLane<'t, M: Method> {
     found: Vec<Option<Result<Answer<Scalar<M>>, RayError>>>,
 }
 
+/// Rays that are made ready and traced at a time: few enough for their numbers to stay in the nearest cache beside the
+/// scene's, enough for reading the clock around them not to count.
+const BLOCK: usize = 64;
+
 impl<M: Method> Lane for MethodLane<'_, M> {
     fn trace(&mut self, rays: &[RayLine], continues: bool, outcomes: &mut Vec<Outcome>, tally: &mut Tally) {
         if !continues {
             self.begin_line();
         }
-        self.ready.clear();
-        self.ready.extend(rays.iter().map(ready));
-        self.found.clear();
-        self.found.reserve(rays.len());
-
-        let MethodTracer { method, limits } = self.tracer;
-        let scene = method.scene();
-        let mut scratch = self.scratch.view();
-        // A ray's counters are summed after the next ray: read at once, they would wait for the kernel's last stores.
-        let (mut work, mut previous) = (Work::default(), Work::default());
-        let mut sums = [0_u64; Work::COUNT];
-        let mut sum = |work: &Work| {
-            for (sum, count) in sums.iter_mut().zip(work.counts()) {
-                *sum += u64::from(count);
-            }
-        };
-        let begin = Instant::now();
-        for ready in &self.ready {
-            let Some((origin, direction, interval)) = ready else {
-                self.found.push(None);
-                continue;
-            };
-            let answer = scene.ray(*origin, *direction).map(|ray| {
-                let memory = &mut self.memory;
-                let answer = method.closest(memory, self.line, &ray, interval, limits, &mut scratch, &mut work);
-                sum(&previous);
-                std::mem::swap(&mut work, &mut previous);
-                answer
-            });
-            self.found.push(Some(answer));
-        }
-        sum(&previous);
-        tally.seconds += begin.elapsed().as_secs_f64();
-
         tally.rays += rays.len() as u64;
-        for (sum, part) in tally.work.iter_mut().zip(sums) {
-            *sum += part;
-        }
-        for place in 0..self.found.len() {
-            let outcome = self.outcome(self.found[place]);
-            match &outcome {
-                Outcome::Hit(_) => tally.hits += 1,
-                Outcome::Miss => {}
-                Outcome::GaveUp { limit, .. } => *tally.gave_up.entry(limit).or_default() += 1,
-                Outcome::Refused(_) | Outcome::Invalid => tally.invalid += 1,
+        for block in rays.chunks(BLOCK) {
+            self.ready.clear();
+            self.ready.extend(block.iter().map(ready));
+            self.trace_ready(tally);
+            for place in 0..self.found.len() {
+                let outcome = self.outcome(self.found[place]);
+                match &outcome {
+                    Outcome::Hit(_) => tally.hits += 1,
+                    Outcome::Miss => {}
+                    Outcome::GaveUp { limit, .. } => *tally.gave_up.entry(limit).or_default() += 1,
+                    Outcome::Refused(_) | Outcome::Invalid => tally.invalid += 1,
+                }
+                outcomes.push(outcome);
             }
-            outcomes.push(outcome);
         }
     }
 }
 
 impl<M: Method> MethodLane<'_, M> {
+    /// Traces what is ready, into `found`; this is what is timed.
+    fn trace_ready(&mut self, tally: &mut Tally) {
+        self.found.clear();
+        self.found.reserve(self.ready.len());
+        let MethodTracer { method, limits } = self.tracer;
+        let scene = method.scene();
+        let mut scratch = self.scratch.view();
+        // A ray's counters are summed after the next ray: read at once, they would wait for the kernel's last stores.
+        let mut works = [Work::default(); 2];
+        let mut sum = |work: &Work| {
+            for (sum, count) in tally.work.iter_mut().zip(work.counts()) {
+                *sum += u64::from(count);
+            }
+        };
+        let begin = Instant::now();
+        for (number, ready) in self.ready.iter().enumerate() {
+            let [even, odd] = &mut works;
+            let (work, previous) = if number % 2 == 0 { (even, odd) } else { (odd, even) };
+            let answer = ready.as_ref().map(|(origin, direction, interval)| {
+                let ray = scene.ray(*origin, *direction)?;
+                let memory = &mut self.memory;
+                Ok(method.closest(memory, self.line, &ray, interval, limits, &mut scratch, work))
+            });
+            self.found.push(answer);
+            sum(previous);
+            *previous = Work::default();
+        }
+        works.iter().for_each(sum);
+        tally.seconds += begin.elapsed().as_secs_f64();
+    }
+
     fn begin_line(&mut self) {
         // The method allows numbers up to 2^32 - 2; before they run out, the memory is emptied and they start again.
         if self.line >= u32::MAX - 2 {
