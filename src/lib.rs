@@ -1,6 +1,6 @@
 #![no_std]
 #![forbid(unsafe_code)]
-//! Rays against Bézier and B-spline surfaces themselves: no tessellation, no allocator, a bounded amount of work per ray.
+//! Rays against Bézier surfaces themselves: no tessellation, no allocator, a bounded amount of work per ray.
 //!
 //! The methods are those of S.-W. Wang, Z.-C. Shih and R.-C. Chang, "An improved rendering technique for ray tracing Bézier
 //! and B-spline surfaces", The Journal of Visualization and Computer Animation 11, 2000: called "the paper" throughout.

@@ -189,6 +189,12 @@ impl<S: Scalar> Planes<S> {
         self.t_origin + depth * self.t_per_depth
     }
 
+    /// Whether a depth lies before the caller's interval.
+    #[inline(always)]
+    pub fn is_before_interval(&self, depth: S) -> bool {
+        self.t(depth) < self.interval.min
+    }
+
     /// The caller's t at a depth, if it lies in the caller's interval.
     #[inline(always)]
     pub fn t_in_interval(&self, depth: S) -> Option<S> {

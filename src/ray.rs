@@ -96,7 +96,7 @@ impl core::fmt::Display for RayError {
             RayError::NotANumber => "a coordinate is NaN",
             RayError::Infinite => "a coordinate is infinite",
             RayError::ZeroDirection => "the direction is zero",
-            RayError::Unrepresentable => "its t in the scene cannot be held by the number type",
+            RayError::Unrepresentable => "its t in the scene, or small steps of it, cannot be held by the number type",
         })
     }
 }

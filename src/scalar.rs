@@ -54,7 +54,7 @@ pub trait Scalar:
     const MIN_POSITIVE: Self;
     /// The largest k for which both 2^k and 2^−k are of full precision.
     const MAX_SCALE: i32;
-    /// Default of [`Limits::tolerance`](crate::limits::Limits::tolerance): some hundred roundings in `f64`, some tens in
+    /// Default of [`Limits::tolerance`](crate::limits::Limits::tolerance): some 2,000 roundings in `f64`, some 30 in
     /// `f32`, where there are none to spare.
     const TOLERANCE: Self;
 

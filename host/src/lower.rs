@@ -77,7 +77,7 @@ pub enum LowerError {
         given: u32,
     },
     /// More memory than the limit `arena-bytes` allows.
-    #[error("the scene needs {needed} bytes of memory and is given {given}: {detail}")]
+    #[error("the scene needs at least {needed} bytes of memory and is given {given}: {detail}")]
     #[diagnostic(help("raise --limit arena-bytes=N, or make fewer patches (--flatness) and voxels (--grid-density)"))]
     Arena {
         /// Bytes needed, by all stages so far.

@@ -113,7 +113,11 @@ impl Sink {
                 let existing = fs::metadata(&target).map_err(|reason| failed(path, reason))?;
                 (target, Some(existing))
             }
-            Err(_) => (path.to_owned(), None),
+            // Nothing is there, or a link that leads to nothing yet.
+            Err(_) => match fs::read_link(path) {
+                Ok(target) => (path.parent().unwrap_or(Path::new("")).join(target), None),
+                Err(_) => (path.to_owned(), None),
+            },
         };
         if existing.as_ref().is_some_and(fs::Metadata::is_dir) || shown().ends_with('/') {
             return Err(OutputError::IsFolder { path: shown().trim_end_matches('/').to_owned() });
@@ -122,6 +126,10 @@ impl Sink {
             // Renaming over a device or a pipe would put a plain file in its place.
             let file = OpenOptions::new().write(true).open(&target).map_err(|reason| failed(path, reason))?;
             return Ok(Self::Straight(file));
+        }
+        if existing.is_some() {
+            // Renaming asks nothing of the file that it replaces; one that may not be written is not to be replaced.
+            OpenOptions::new().write(true).open(&target).map_err(|reason| failed(path, reason))?;
         }
         let folder = match target.parent() {
             Some(folder) if folder != Path::new("") => folder,

@@ -76,8 +76,9 @@ pub fn closest<P: Point>(
             Some(root) => Remembered { u: root.u, v: root.v, stamp },
             None => Remembered::EMPTY,
         };
-        // A point beyond the range, verified, proves a miss within it.
-        Ok(found.filter(|root| root.depth <= range.max && planes.t_in_interval(root.depth).is_some()))
+        // A point behind the closest hit so far, or behind the interval, verified, proves a miss before it. It is not held
+        // against the surface's box: a root may lie off by Newton's tolerance, which is more than a thin box's padding.
+        Ok(found.filter(|root| planes.t_in_interval(root.depth).is_some()))
     })
 }
 
@@ -97,7 +98,7 @@ impl<P: Point> Search<'_, '_, '_, P> {
             return Ok(None);
         };
         // A point before the interval says nothing about what lies in it.
-        let point = self.solver.solve(start, work)?.filter(|root| root.depth >= self.range.min);
+        let point = self.solver.solve(start, work)?.filter(|root| !self.solver.planes.is_before_interval(root.depth));
         let verified = match point {
             Some(point) => self.verify(point, work)?,
             None => None,

@@ -1,6 +1,6 @@
 //! The models and rays that every method has to answer.
 
-use patchray_host::scene::model::Model;
+use patchray_host::scene::model::{Model, ModelSurface};
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::shapes::{self, Random};
 use patchray_host::scene::teapot;
@@ -32,10 +32,29 @@ pub(crate) fn cases() -> Vec<Case> {
         case("sphere", shapes::sphere([0.1, 0.2, -0.3], 1.0)),
         case("cylinder", shapes::cylinder([0.3, -0.1, 0.2], 0.7, 1.1)),
         case("torus", shapes::torus([-0.2, 0.1, 0.05], 1.0, 0.4, 4, 4)),
+        case("flat disc", flat_disc()),
+        case("flat bicubic", flat_bicubic()),
         case("bumpy 2 x 12", bumpy(1, [2, 12])),
         case("bumpy 5 x 5", bumpy(2, [5, 5])),
         case("bumpy 15 x 15", bumpy(3, [15, 15])),
     ]
+}
+
+/// A quarter of a disc in a plane across an axis: its box is as thin as its padding, and Newton's iteration, whose
+/// tolerance is wider, still takes several steps in it.
+fn flat_disc() -> Model {
+    let w = 0.5_f64.sqrt();
+    let points = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 0.0, w], [1.0, 1.0, w], [0.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+    let points = points.map(|[x, y, w]| [x, y, 0.7, w]).to_vec();
+    shapes::single(ModelSurface { number: 0, degree_u: 2, degree_v: 1, rational: true, points })
+}
+
+/// A square in a plane across an axis, with its inner points moved within the plane.
+fn flat_bicubic() -> Model {
+    let mut random = Random(9);
+    let mut moved = |k: usize| k as f64 / 3.0 + if k % 3 == 0 { 0.0 } else { random.within(-0.1, 0.1) };
+    let points = (0..16).map(|k| [moved(k / 4), moved(k % 4), 0.3, 1.0]).collect();
+    shapes::single(ModelSurface { number: 0, degree_u: 3, degree_v: 3, rational: false, points })
 }
 
 impl Case {

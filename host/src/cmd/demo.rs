@@ -89,7 +89,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
             help: "name files with -o and --stats, or use --json instead of the table".to_owned(),
         });
     }
-    check_outputs(Some(&output), flags)?;
+    check_outputs(Some(&output), &[], flags)?;
     let Scene { model, description, .. } = common_scene()?;
     let settings = Settings::of_flags(flags);
     let mut png = Output::create(&output)?;

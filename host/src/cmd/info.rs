@@ -94,7 +94,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     }
     let output = flags.output.as_deref().unwrap_or(Path::new("-"));
     // What is printed is one thing, in one form or the other.
-    check_outputs(Some(output), &Flags { json: false, ..flags.clone() })?;
+    check_outputs(Some(output), &[file], &Flags { json: false, ..flags.clone() })?;
     let is_scene = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
     let loaded = if is_scene { load::scene(file, flags)? } else { load::patches(file, flags)? };
     let mut out = Output::create(output)?;

@@ -7,7 +7,7 @@ pub mod query;
 pub mod render;
 
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -82,16 +82,31 @@ pub fn say(text: std::fmt::Arguments) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// Refuses flags that send more than one thing to standard output, or two things to one file.
-pub(crate) fn check_outputs(output: Option<&Path>, flags: &Flags) -> Result<(), Failure> {
+/// Where a path leads, however it is spelled: links followed, and of a file that is not there yet the folder's.
+fn place(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let beside = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
+    path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_owned())
+}
+
+/// Refuses flags that send more than one thing to standard output, two things to one file, or anything to an input.
+pub(crate) fn check_outputs(output: Option<&Path>, inputs: &[&Path], flags: &Flags) -> Result<(), Failure> {
     let stdout = Path::new("-");
     let usage = |message: &str, help: &str| Err(Failure::Usage { message: message.to_owned(), help: help.to_owned() });
     let to_stdout = [output == Some(stdout), flags.stats.as_deref() == Some(stdout), flags.json];
     if to_stdout.iter().filter(|&&to| to).count() > 1 {
         return usage("two outputs would go to standard output", "name a file for one of them, with -o or --stats");
     }
-    if output.is_some_and(|output| output != stdout && flags.stats.as_deref() == Some(output)) {
+    let file = |path: Option<&Path>| path.filter(|path| *path != stdout).map(place);
+    let (output, stats) = (file(output), file(flags.stats.as_deref()));
+    // A device such as /dev/null takes any number of outputs.
+    if output.is_some() && output == stats && output.as_deref().is_some_and(|path| !path.exists() || path.is_file()) {
         return usage("-o and --stats name the same file", "name two files");
+    }
+    for input in inputs.iter().filter_map(|input| file(Some(input))) {
+        if input.is_file() && (output.as_ref() == Some(&input) || stats.as_ref() == Some(&input)) {
+            return usage("an output would replace an input", "name another file with -o or --stats");
+        }
     }
     Ok(())
 }

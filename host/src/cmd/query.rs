@@ -48,7 +48,7 @@ pub fn run(args: &QueryArgs) -> Result<(), Failure> {
         });
     }
     let output = flags.output.as_deref().unwrap_or(Path::new("-"));
-    check_outputs(Some(output), flags)?;
+    check_outputs(Some(output), &[patches, rays], flags)?;
     let loaded = load::patches(patches, flags)?;
     let settings = &loaded.settings;
     let mut reader = Rays::open(rays, flags.on_invalid())?;

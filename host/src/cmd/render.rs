@@ -43,7 +43,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
             help: "add `-o OUT.png`, or `-o -` for standard output".to_owned(),
         });
     };
-    check_outputs(Some(output), flags)?;
+    check_outputs(Some(output), &[scene], flags)?;
     let loaded = load::scene(scene, flags)?;
     let Some(description) = &loaded.description else {
         return Err(Failure::Internal("a scene without a description".to_owned()));

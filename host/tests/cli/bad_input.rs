@@ -158,3 +158,34 @@ fn outputs_that_cannot_be_written_end_with_5() {
     folder.fails("query teapot.bpt bad.csv -o old.csv", 3, &["direction is zero"]);
     assert_eq!(folder.text("old.csv"), "old");
 }
+
+/// However a path is spelled: an output in the place of an input, or of another output, would destroy it.
+#[test]
+fn no_output_replaces_an_input_or_another_output() {
+    let folder = Folder::new();
+    let rays = folder.text("rays.csv");
+    let input = &["an output would replace an input"];
+    for words in [
+        "query teapot.bpt rays.csv -o rays.csv",
+        "query teapot.bpt rays.csv -o ./rays.csv",
+        "query ./teapot.bpt rays.csv -o teapot.bpt",
+        "query teapot.bpt rays.csv -o a.csv --stats rays.csv",
+        "render scene.toml -o scene.toml",
+        "info teapot.bpt -o teapot.bpt",
+    ] {
+        folder.fails(words, 2, input);
+    }
+    folder.fails("query teapot.bpt rays.csv -o a.csv --stats ./a.csv", 2, &["name the same file"]);
+    assert_eq!(folder.text("rays.csv"), rays);
+    folder.done("query teapot.bpt rays.csv -o /dev/null --stats /dev/null");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_is_followed_even_where_nothing_is_yet() {
+    let folder = Folder::new();
+    std::os::unix::fs::symlink("target.csv", folder.path("link.csv")).expect("links can be made");
+    folder.done("query teapot.bpt rays.csv -o link.csv");
+    assert!(folder.path("link.csv").is_symlink());
+    assert!(folder.text("target.csv").starts_with("ray,"));
+}
