@@ -52,7 +52,7 @@ fn flat_disc() -> Model {
 /// A square in a plane across an axis, with its inner points moved within the plane.
 fn flat_bicubic() -> Model {
     let mut random = Random(9);
-    let mut moved = |k: usize| k as f64 / 3.0 + if k % 3 == 0 { 0.0 } else { random.within(-0.1, 0.1) };
+    let mut moved = |k: usize| k as f64 / 3.0 + if k.is_multiple_of(3) { 0.0 } else { random.within(-0.1, 0.1) };
     let points = (0..16).map(|k| [moved(k / 4), moved(k % 4), 0.3, 1.0]).collect();
     shapes::single(ModelSurface { number: 0, degree_u: 3, degree_v: 3, rational: false, points })
 }
