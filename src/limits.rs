@@ -180,7 +180,7 @@ pub enum Limit {
     Voxels,
     /// [`Limits::newton_steps`].
     NewtonSteps,
-    /// The scratch is too small for a surface of this degree: its order is the owner's choice.
+    /// The scratch is too small for a surface of these degrees: its capacities are the owner's choice.
     Scratch,
     /// Coherence memory with fewer slots than surfaces.
     Memory,

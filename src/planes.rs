@@ -110,6 +110,12 @@ impl<S: Scalar> Planes<S> {
         self.direction
     }
 
+    /// The ray's point at a depth, in the frame.
+    #[inline(always)]
+    pub fn at(&self, depth: S) -> [S; 3] {
+        core::array::from_fn(|k| self.origin[k] + self.direction[k] * depth)
+    }
+
     /// 1 / direction, component by component; infinite where the direction is 0.
     pub fn inverse(&self) -> [S; 3] {
         self.inverse

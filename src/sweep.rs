@@ -2,7 +2,7 @@
 //!
 //! A full search sweeps along the ray, a testing ray back toward its origin; both meet each patch once.
 
-use crate::limits::{Limit, Limits, Work};
+use crate::limits::{Limit, Limits, Work, spend};
 use crate::patch::{Crossing, Patch};
 use crate::planes::Planes;
 use crate::scalar::Scalar;
@@ -24,16 +24,10 @@ pub fn sweep<S: Scalar>(
     // Ends with the walk.
     while let Some(voxel) = walk.advance() {
         let mut voxel = voxel.map_err(|()| Limit::Slot)?;
-        if work.voxels_visited >= limits.voxels {
-            return Err(Limit::Voxels);
-        }
-        work.voxels_visited += 1;
+        spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
         while let Some(item) = voxel.next_fresh() {
             let patch = patches.get(item).ok_or(Limit::Slot)?;
-            if work.patches_tested >= limits.patches {
-                return Err(Limit::Patches);
-            }
-            work.patches_tested += 1;
+            spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
             if let Some(crossing) = patch.bounds().crossing(planes) {
                 enough = visit(patch, &crossing, work)?;
             }

@@ -35,11 +35,9 @@ pub fn testing_ray<S: Scalar>(
     work: &mut Work,
     mut visit: impl FnMut(&Listed<'_, S>, &mut Work) -> Result<(), Limit>,
 ) -> Result<(), Limit> {
-    let (origin, direction) = (planes.origin(), planes.direction());
-    let start = core::array::from_fn(|k| origin[k] + direction[k] * root.depth);
     let inverse = planes.inverse().map(|c| -c);
     let range = DepthRange { min: nearest, max: root.depth };
-    let walk = grid.walk(&start, &inverse, root.depth - nearest);
+    let walk = grid.walk(&planes.at(root.depth), &inverse, root.depth - nearest);
     sweep(walk, patches, planes, limits, work, |patch, crossing, work| {
         let owner = patch.domain().holds(root.u, root.v);
         // The owner's box holds the point; another's counts if it reaches between point and origin.

@@ -69,14 +69,13 @@ impl<'m, S: Scalar> Grid<'m, S> {
     /// the ray passes the grid by.
     #[inline(always)]
     pub fn enter(&self, planes: &Planes<S>, range: &DepthRange<S>) -> Option<(Walk<'m, S>, S)> {
-        let (origin, direction, inverse) = (planes.origin(), planes.direction(), planes.inverse());
-        let (near, far) = self.slot.bounds.depths(&origin, &inverse)?;
+        let inverse = planes.inverse();
+        let (near, far) = self.slot.bounds.depths(&planes.origin(), &inverse)?;
         let (begin, end) = (near.greater(range.min), far.lesser(range.max));
         if !(begin <= end) {
             return None;
         }
-        let start = core::array::from_fn(|k| origin[k] + direction[k] * begin);
-        Some((self.walk(&start, &inverse, end - begin), begin))
+        Some((self.walk(&planes.at(begin), &inverse, end - begin), begin))
     }
 
     /// The walk along `start + s · direction` for s in [0, `length`], by the direction's `inverse`: 1 / its components,

@@ -10,8 +10,7 @@ use patchray::grid::{GridError, GridMemory, GridNeeds, GridOptions, GridSlot, Gr
 use patchray::limits::{Acceptance, GaveUp, Limit, Limits, Work};
 use patchray::method::newton_coherent::Remembered;
 use patchray::method::{Scratch, newton, newton_coherent};
-use patchray::patch::Patches;
-use patchray::patch::{Parallelepiped, Patch};
+use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::{Plain, Point, Weighted};
 use patchray::ray::{Hit, Interval};
 use patchray::scalar::Scalar;
