@@ -162,7 +162,8 @@ impl<S: Scalar> Frame<S> {
         let axis = ray.axis;
         let speed = axis.of(&ray.direction).abs();
         let direction = ray.direction.map(|c| c / speed);
-        let inverse = direction.map(|c| S::ONE / c);
+        // Not from `direction`, so that neither division waits for the other.
+        let inverse = ray.direction.map(|c| speed / c);
         let (mut origin, mut t_origin) = (ray.origin, S::ZERO);
         if ray.far {
             (origin, t_origin) = self.approach(ray, axis)?;

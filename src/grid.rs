@@ -6,7 +6,8 @@
 //! An item stands in every voxel that its box along the axes touches, so the voxels of an item form a block. A line passes
 //! a block in one stretch, and so an item needs testing only in the first voxel of that stretch: where the voxel that the
 //! line came from does not hold it. Each reference carries six bits that say which of the six neighbours hold the item
-//! too; no marks are kept per ray.
+//! too; no marks are kept per ray. Each voxel's offset carries eight bits that say in which octants of directions nothing
+//! lies from there on, so that a line is not followed into empty space: an eighth of all steps on the common teapot.
 
 use crate::arena::{Arena, Need};
 use crate::frame::Aabb;
@@ -27,6 +28,8 @@ pub struct GridSlot<S> {
     pub(crate) counts: [u32; 3],
     /// The first of its offsets: one per voxel, and one more.
     first: u32,
+    /// The first of its references.
+    first_reference: u32,
 }
 
 /// Bits of a reference that hold the item's number; the other six are neighbour bits.
@@ -39,14 +42,29 @@ pub const MAX_ITEMS: usize = ITEM_MASK as usize;
 /// The most voxels along one axis: far more than any density in use asks for, so that three counts never overflow.
 const MAX_ALONG_AXIS: u32 = 1 << 9;
 
-/// A grid is too large: more items than [`MAX_ITEMS`], or more voxels or references than 32 bits can count.
+/// Bits of an offset that count references from the grid's first one. The other eight say, for each octant of directions,
+/// that from this voxel on, itself included, it holds nothing: a line that goes there need not be followed.
+pub(crate) const OFFSET_BITS: u32 = 24;
+pub(crate) const OFFSET_MASK: u32 = (1 << OFFSET_BITS) - 1;
+
+/// The most references a grid can hold.
+pub const MAX_REFERENCES: usize = OFFSET_MASK as usize;
+
+/// A grid is too large: more items than [`MAX_ITEMS`], more references than [`MAX_REFERENCES`], or more voxels in all than
+/// 32 bits can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLarge;
 
 impl<S: Scalar> GridSlot<S> {
     /// What a slot holds before it is filled: a grid without voxels.
-    pub const EMPTY: Self =
-        GridSlot { bounds: Aabb::ORIGIN, cell: [S::ZERO; 3], inverse_cell: [S::ZERO; 3], counts: [0; 3], first: 0 };
+    pub const EMPTY: Self = GridSlot {
+        bounds: Aabb::ORIGIN,
+        cell: [S::ZERO; 3],
+        inverse_cell: [S::ZERO; 3],
+        counts: [0; 3],
+        first: 0,
+        first_reference: 0,
+    };
 
     /// The most voxels that one line can pass.
     pub fn longest_walk(&self) -> u32 {
@@ -71,20 +89,21 @@ impl<S: Scalar> GridSlot<S> {
         let first = u32::try_from(offsets.len()).map_err(|_| TooLarge)?;
         let cell = core::array::from_fn(|k| bounds.sides()[k] / S::from_u32(counts[k]));
         let inverse_cell = cell.map(|side: S| if side > S::ZERO { S::ONE / side } else { S::ZERO });
-        let slot = GridSlot { bounds, cell, inverse_cell, counts, first };
-        let voxels = counts.iter().product::<u32>() as usize;
         let from = references.len();
+        let first_reference = u32::try_from(from).map_err(|_| TooLarge)?;
+        let slot = GridSlot { bounds, cell, inverse_cell, counts, first, first_reference };
+        let voxels = counts.iter().product::<u32>() as usize;
         offsets.extend(voxels + 1, 0);
         // Counting needs no memory: the blocks' sizes.
-        let mut total = from;
+        let mut total = 0_usize;
         for k in 0..count {
             let [low, high] = slot.block(&boxes(k));
             total = total.saturating_add((0..3).fold(1, |size, a| size * (high[a] - low[a] + 1) as usize));
         }
-        if u32::try_from(total).is_err() {
+        if total > MAX_REFERENCES {
             return Err(TooLarge);
         }
-        references.extend(total - from, 0);
+        references.extend(total, 0);
         let (Some(offsets), Some(references)) = (offsets.since(first as usize), references.since(from)) else {
             return Ok(slot);
         };
@@ -97,7 +116,7 @@ impl<S: Scalar> GridSlot<S> {
                 }
             });
         }
-        let mut begin = from as u32;
+        let mut begin = 0;
         for offset in offsets.iter_mut() {
             let number = *offset;
             *offset = begin;
@@ -106,14 +125,51 @@ impl<S: Scalar> GridSlot<S> {
         for k in 0..count {
             slot.each_voxel(&boxes(k), |voxel, neighbours| {
                 if let Some(offset) = offsets.get_mut(voxel + 1) {
-                    if let Some(reference) = references.get_mut(*offset as usize - from) {
+                    if let Some(reference) = references.get_mut(*offset as usize) {
                         *reference = k as u32 | neighbours << ITEM_BITS;
                     }
                     *offset += 1;
                 }
             });
         }
+        slot.mark_empty_octants(offsets);
         Ok(slot)
+    }
+
+    /// Sets the bits of each voxel's offset that say in which octants nothing lies.
+    fn mark_empty_octants(&self, offsets: &mut [u32]) {
+        let counts = self.counts;
+        let strides = [1, counts[0] as usize, counts[0] as usize * counts[1] as usize];
+        for octant in 0..8 {
+            let bit = 1 << (OFFSET_BITS + octant);
+            let forward = |axis: usize| octant >> axis & 1 == 1;
+            // The far end first, so that the three voxels ahead of one are done before it.
+            let far_first = |axis: usize| {
+                let (count, forward) = (counts[axis], forward(axis));
+                (0..count).map(move |step| if forward { count - 1 - step } else { step })
+            };
+            for z in far_first(2) {
+                for y in far_first(1) {
+                    for x in far_first(0) {
+                        let at = [x, y, z];
+                        let voxel = (0..3).fold(0, |voxel, axis| voxel + at[axis] as usize * strides[axis]);
+                        let ends = offsets.get(voxel..).and_then(<[u32]>::first_chunk);
+                        let empty = ends.is_some_and(|[begin, end]| begin & OFFSET_MASK == end & OFFSET_MASK);
+                        let empty_ahead = (0..3).all(|axis| {
+                            let (last, next) = if forward(axis) {
+                                (at[axis] + 1 >= counts[axis], voxel + strides[axis])
+                            } else {
+                                (at[axis] == 0, voxel.wrapping_sub(strides[axis]))
+                            };
+                            last || offsets.get(next).is_some_and(|offset| offset & bit != 0)
+                        });
+                        if let (true, Some(offset)) = (empty && empty_ahead, offsets.get_mut(voxel)) {
+                            *offset |= bit;
+                        }
+                    }
+                }
+            }
+        }
     }
 
     /// First and last voxel, by axis, that a box touches.
@@ -185,6 +241,7 @@ impl<'m, S: Scalar> Grid<'m, S> {
         }
         let first = slot.first as usize;
         let offsets = offsets.get(first..first.checked_add(voxels)?.checked_add(1)?)?;
+        let references = references.get(slot.first_reference as usize..)?;
         Some(Grid { slot, offsets, references })
     }
 }

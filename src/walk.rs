@@ -3,7 +3,7 @@
 //! Source: Cleary and Wyvill (1988). The distance to each wall is computed afresh from the wall's number rather than by
 //! adding up steps, so that its rounding does not grow along the way.
 
-use crate::grid::{Grid, ITEM_BITS, ITEM_MASK};
+use crate::grid::{Grid, ITEM_BITS, ITEM_MASK, OFFSET_BITS, OFFSET_MASK};
 use crate::planes::{DepthRange, Planes};
 use crate::scalar::Scalar;
 
@@ -45,6 +45,8 @@ pub struct Walk<'m, S> {
     voxel: usize,
     length: S,
     came_from: u32,
+    /// The bit of an offset that says that nothing lies ahead.
+    nothing_ahead: u32,
     done: bool,
 }
 
@@ -85,8 +87,17 @@ impl<'m, S: Scalar> Grid<'m, S> {
         let slot = self.slot;
         let [x, y, _] = slot.counts.map(|n| n as usize);
         let (offsets, references) = (self.offsets, self.references);
-        let mut walk =
-            Walk { offsets, references, axes: [Across::NONE; 3], voxel: 0, length, came_from: 0, done: false };
+        let mut walk = Walk {
+            offsets,
+            references,
+            axes: [Across::NONE; 3],
+            voxel: 0,
+            length,
+            came_from: 0,
+            nothing_ahead: 0,
+            done: false,
+        };
+        let mut octant = 0;
         // Written in place: the walk is large, and building its parts apart would copy them.
         let mut stride = 1_usize;
         for k in 0..3 {
@@ -104,7 +115,9 @@ impl<'m, S: Scalar> Grid<'m, S> {
             across.left = if forward { slot.counts[k].saturating_sub(at + 1) } else { at };
             across.behind = 1 << (ITEM_BITS + 2 * k as u32 + u32::from(!forward));
             stride = if k == 0 { x } else { x.wrapping_mul(y) };
+            octant |= u32::from(forward) << k;
         }
+        walk.nothing_ahead = 1 << (OFFSET_BITS + octant);
         walk
     }
 }
@@ -115,15 +128,19 @@ impl<S: Scalar> Across<S> {
 }
 
 impl<'m, S: Scalar> Walk<'m, S> {
-    /// The next voxel; `Err` if the lent memory leads nowhere. Ends: each step crosses a wall, of which there are at most
-    /// [`GridSlot::longest_walk`](crate::grid::GridSlot::longest_walk).
+    /// The next voxel, unless nothing lies in it and beyond; `Err` if the lent memory leads nowhere. Ends: each step crosses a
+    /// wall, of which there are at most [`GridSlot::longest_walk`](crate::grid::GridSlot::longest_walk).
     #[inline(always)]
     pub fn advance(&mut self) -> Option<Result<Voxel<'m, S>, ()>> {
         if self.done {
             return None;
         }
         let references = match self.offsets.get(self.voxel..).and_then(<[u32]>::first_chunk) {
-            Some(&[begin, end]) => self.references.get(begin as usize..end as usize),
+            Some(&[begin, _]) if begin & self.nothing_ahead != 0 => {
+                self.done = true;
+                return None;
+            }
+            Some(&[begin, end]) => self.references.get((begin & OFFSET_MASK) as usize..(end & OFFSET_MASK) as usize),
             None => None,
         };
         let Some(references) = references else {

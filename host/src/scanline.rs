@@ -204,7 +204,6 @@ impl<M: Method> MethodLane<'_, M> {
     /// Traces what is ready, into `found`; this is what is timed.
     fn trace_ready(&mut self, tally: &mut Tally) {
         self.found.clear();
-        self.found.reserve(self.ready.len());
         let MethodTracer { method, limits } = self.tracer;
         let scene = method.scene();
         let mut scratch = self.scratch.view();
@@ -216,7 +215,7 @@ impl<M: Method> MethodLane<'_, M> {
             }
         };
         let begin = Instant::now();
-        for (number, ready) in self.ready.iter().enumerate() {
+        self.found.extend(self.ready.iter().enumerate().map(|(number, ready)| {
             let [even, odd] = &mut works;
             let (work, previous) = if number % 2 == 0 { (even, odd) } else { (odd, even) };
             let answer = ready.as_ref().map(|(origin, direction, interval)| {
@@ -224,10 +223,10 @@ impl<M: Method> MethodLane<'_, M> {
                 let memory = &mut self.memory;
                 Ok(method.closest(memory, self.line, &ray, interval, limits, &mut scratch, work))
             });
-            self.found.push(answer);
             sum(previous);
             *previous = Work::default();
-        }
+            answer
+        }));
         works.iter().for_each(sum);
         tally.seconds += begin.elapsed().as_secs_f64();
     }

@@ -22,7 +22,8 @@ fn items_stand_where_their_boxes_are() {
     let mut seen = 0;
     for voxel in 0..(x * y * z) {
         let here = [voxel % x, voxel / x % y, voxel / (x * y)];
-        let items = &references[offsets[voxel as usize] as usize..offsets[voxel as usize + 1] as usize];
+        let [begin, end] = [0, 1].map(|next| (offsets[voxel as usize + next] & OFFSET_MASK) as usize);
+        let items = &references[begin..end];
         seen += items.len();
         for (number, item) in boxes.iter().enumerate() {
             let [low, high] = slot.block(item);
@@ -38,6 +39,40 @@ fn items_stand_where_their_boxes_are() {
         }
     }
     assert_eq!(seen, total);
+}
+
+/// A line is given up in a voxel exactly if no voxel holds anything from there on in its octant.
+#[test]
+fn octants_are_marked_where_they_hold_nothing() {
+    let at = |low: [f64; 3]| Aabb { low, high: low.map(|c| c + 0.1) };
+    let boxes = [at([0.1, 0.2, 0.0]), at([0.8, 0.3, 0.9]), at([0.4, 0.9, 0.5])];
+    let (slot, offsets, ..) = built(&boxes, 40.0, 1000);
+    let [x, y, z] = slot.counts;
+    let place = |voxel: u32| [voxel % x, voxel / x % y, voxel / (x * y)];
+    let holds = |voxel: u32| {
+        let [begin, end] = [voxel, voxel + 1].map(|k| offsets[k as usize] & OFFSET_MASK);
+        begin < end
+    };
+    let mut marked = 0;
+    for voxel in 0..x * y * z {
+        for octant in 0..8 {
+            let ahead = |other: &u32| {
+                (0..3).all(|k| {
+                    let (from, to) = (place(voxel)[k], place(*other)[k]);
+                    if octant >> k & 1 == 1 { to >= from } else { to <= from }
+                })
+            };
+            let empty = !(0..x * y * z).filter(ahead).any(holds);
+            assert_eq!(
+                offsets[voxel as usize] >> (OFFSET_BITS + octant) & 1 == 1,
+                empty,
+                "{:?} {octant}",
+                place(voxel)
+            );
+            marked += u32::from(empty);
+        }
+    }
+    assert!(marked > x * y * z && marked < 8 * x * y * z, "{marked}");
 }
 
 #[test]

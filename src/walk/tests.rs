@@ -195,7 +195,7 @@ fn lines_that_pass_the_grid_by_and_grids_without_voxels() {
 fn offsets_that_lead_nowhere_end_the_walk() {
     let mut random = Random(53);
     let mut built = Built::new(boxes::<f32>(&mut random, 20, [0.5; 3]), 4.0);
-    built.offsets.fill(u32::MAX);
+    built.offsets.fill(OFFSET_MASK);
     let mut walk = built.grid().walk(&[0.0; 3], &[1.0, f32::INFINITY, f32::INFINITY], 1.0);
     assert!(walk.advance().unwrap().is_err());
     assert!(walk.advance().is_none());
