@@ -101,6 +101,26 @@ impl<S, const ORDER: usize> Default for Basis<S, ORDER> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Full;
 
+/// One of the two parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// The outer index of a net.
+    U,
+    /// The inner index of a net.
+    V,
+}
+
+impl Direction {
+    /// The other one.
+    #[inline(always)]
+    pub(crate) fn other(self) -> Self {
+        match self {
+            Direction::U => Direction::V,
+            Direction::V => Direction::U,
+        }
+    }
+}
+
 /// The degrees of a net in u and v, and with them the shape of the slice that holds it: u is the outer index.
 ///
 /// Of 8 bits, so that degree + 1 is not 0 whatever it holds: rows of length 0 could not be cut.
@@ -194,6 +214,66 @@ impl<S: Scalar> BasisView<'_, S> {
     pub(crate) fn fill(&mut self, degrees: Degrees, [u, v]: [S; 2]) -> Result<(), Full> {
         bernstein(usize::from(degrees.u), u, self.u)?;
         bernstein(usize::from(degrees.v), v, self.v)
+    }
+}
+
+/// The part of a net over [from, to] of one parameter, in place, by de Casteljau's algorithm.
+#[inline(always)]
+pub(crate) fn restrict<S: Scalar, T: Linear<S>>(degrees: Degrees, net: &mut [T], direction: Direction, part: [S; 2]) {
+    if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&mut [T; 16]>::try_from(&mut *net)) {
+        return restrict_unrolled::<S, T, 4, 16>(net, direction, part);
+    }
+    if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&mut [T; 9]>::try_from(&mut *net)) {
+        return restrict_unrolled::<S, T, 3, 9>(net, direction, part);
+    }
+    let (rows, columns) = (degrees.rows(), degrees.columns());
+    match direction {
+        Direction::U => (0..columns).for_each(|column| restrict_line(net, column, columns, rows, part)),
+        Direction::V => (0..rows).for_each(|row| restrict_line(net, row * columns, 1, columns, part)),
+    }
+}
+
+/// [`restrict`] for an order known when compiling; `N` is `ORDER²`.
+#[inline(always)]
+fn restrict_unrolled<S: Scalar, T: Linear<S>, const ORDER: usize, const N: usize>(
+    net: &mut [T; N],
+    direction: Direction,
+    part: [S; 2],
+) {
+    const { assert!(ORDER * ORDER == N) }
+    match direction {
+        Direction::U => restrict_lines::<S, T, ORDER, N>(net, |line, k| k * ORDER + line, part),
+        Direction::V => restrict_lines::<S, T, ORDER, N>(net, |line, k| line * ORDER + k, part),
+    }
+}
+
+/// `ORDER` lines of as many points, of which `at` says where they are.
+#[inline(always)]
+fn restrict_lines<S: Scalar, T: Linear<S>, const ORDER: usize, const N: usize>(
+    net: &mut [T; N],
+    at: impl Fn(usize, usize) -> usize,
+    [from, to]: [S; 2],
+) {
+    if to != S::ONE {
+        let rest = S::ONE - to;
+        for line in 0..ORDER {
+            for level in 1..ORDER {
+                for k in (level..ORDER).rev() {
+                    net[at(line, k)] = net[at(line, k - 1)] * rest + net[at(line, k)] * to;
+                }
+            }
+        }
+    }
+    if from != S::ZERO && to > S::ZERO {
+        let from = from / to;
+        let rest = S::ONE - from;
+        for line in 0..ORDER {
+            for level in 1..ORDER {
+                for k in 0..ORDER - level {
+                    net[at(line, k)] = net[at(line, k)] * rest + net[at(line, k + 1)] * from;
+                }
+            }
+        }
     }
 }
 

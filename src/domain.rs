@@ -63,6 +63,21 @@ impl Domain {
         ancestor(u, self.u) && ancestor(v, self.v & !ROUGH)
     }
 
+    /// Whether it and another have a point in common, borders included.
+    pub fn adjoins(self, other: Self) -> bool {
+        // Both ends in steps of the finest level.
+        let ends = |index: u16| {
+            let (level, index) = (level(index).min(MAX_LEVEL), u32::from(index));
+            let first = (index - (1 << level)) << (MAX_LEVEL - level);
+            [first, first + (1 << (MAX_LEVEL - level))]
+        };
+        let overlap = |a: u16, b: u16| {
+            let (a, b) = (ends(a), ends(b));
+            a[0] <= b[1] && b[0] <= a[1]
+        };
+        overlap(self.u, other.u) && overlap(self.v & !ROUGH, other.v & !ROUGH)
+    }
+
     /// The parameters at (a, b) of the local coordinates, −1 to 1 across the domain.
     #[inline(always)]
     pub(crate) fn parameters<S: Scalar>(self, a: S, b: S) -> [S; 2] {

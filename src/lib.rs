@@ -83,6 +83,11 @@ pub mod walk;
 
 pub mod newton;
 
+pub mod clip;
+pub mod region;
+
+pub mod clipper;
+
 pub mod sweep;
 pub mod verify;
 

@@ -30,13 +30,16 @@ pub struct Limits<S> {
     /// Parameter: how often one Newton step may be halved because the residual grew. 0 is the undamped method.
     pub newton_halvings: u32,
     /// Parameter: how far from the ray a root may lie, relative to the scene's frame (coordinates below 1). Smaller costs
-    /// up to one more evaluation per root; below some 8 roundings roots are refused for noise.
+    /// up to one more evaluation or clip per root; below some 8 roundings roots are refused for noise.
     pub tolerance: S,
     /// Parameter: the factor f in eq. (1), read as tan α > f · b/h; the paper's is 1. Smaller flags more rays as critical,
     /// which costs time and loses fewer double roots.
     pub critical_factor: S,
     /// Parameter: what the coherent methods take for "met at most once".
     pub acceptance: Acceptance,
+    /// Parameter: the share of a parameter's interval that a clip has to remove, else the interval is bisected; the
+    /// paper's is 0.20. Smaller clips on where a bisection would part two roots, larger bisects where a clip would do.
+    pub clip_threshold: S,
     /// Budget: surfaces whose box is tested.
     pub surfaces: u32,
     /// Budget: inner nodes of binary trees tested.
@@ -47,6 +50,12 @@ pub struct Limits<S> {
     pub voxels: u32,
     /// Budget: Newton iterations, that is evaluations of a surface.
     pub newton_steps: u32,
+    /// Budget: clips of a parameter's interval.
+    pub clip_steps: u32,
+    /// Budget: bisections of a parameter's interval.
+    pub bisections: u32,
+    /// Budget: domains of one surface that wait to be clipped at one time. The scratch may hold fewer.
+    pub pending_domains: u32,
 }
 
 impl<S: Scalar> Default for Limits<S> {
@@ -60,11 +69,15 @@ impl<S: Scalar> Default for Limits<S> {
             tolerance: S::TOLERANCE,
             critical_factor: S::ONE,
             acceptance: Acceptance::Paper,
+            clip_threshold: S::from_f64(0.2),
             surfaces: 100_000,
             nodes: 1_000_000,
             patches: 1_000_000,
             voxels: 1_000_000,
             newton_steps: 100_000,
+            clip_steps: 20_000,
+            bisections: 10_000,
+            pending_domains: 64,
         }
     }
 }
@@ -84,6 +97,8 @@ pub struct Extent {
     pub surface_voxels: u32,
     /// How often a method may walk the grid of one surface for one ray: 0, or 2 with a testing ray first.
     pub walks: u32,
+    /// Whether the method is a clipping method: these have no bound on clips but the budget.
+    pub clipped: bool,
 }
 
 impl<S: Scalar> Limits<S> {
@@ -93,6 +108,7 @@ impl<S: Scalar> Limits<S> {
         // A remembered point and the verification's starts come on top of those of the full search.
         let starts_per_patch = self.newton_starts.saturating_add(extent.walks.min(1));
         let patches = extent.patches.saturating_mul(walks).min(self.patches);
+        let clips = if extent.clipped { self.clip_steps } else { 0 };
         let starts = patches.saturating_mul(starts_per_patch).saturating_add(extent.surfaces);
         Work {
             surfaces_tested: extent.surfaces.min(self.surfaces),
@@ -107,11 +123,17 @@ impl<S: Scalar> Limits<S> {
             newton_steps: starts.saturating_mul(self.newton_iterations).min(self.newton_steps),
             critical: patches,
             unresolved: patches,
-            intersection_points: starts,
+            intersection_points: starts.saturating_add(clips),
             verified: extent.surfaces,
             decided_by_list: extent.surfaces,
             start_failed: extent.surfaces,
             full_searches: extent.surfaces,
+            clip_steps: clips,
+            bisections: if extent.clipped { self.bisections.min(clips) } else { 0 },
+            bisection_cases: if extent.clipped { extent.surfaces } else { 0 },
+            refused_as_critical: extent.surfaces,
+            refused_by_list: extent.surfaces,
+            refused_by_neighbour: extent.surfaces,
         }
     }
 }
@@ -165,6 +187,20 @@ counters! {
     start_failed,
     /// Coherent: searches of a surface's whole grid.
     full_searches,
+    /// Clips of a parameter's interval.
+    clip_steps,
+    /// Bisections of a parameter's interval.
+    bisections,
+    /// Surfaces of which a domain was bisected: the paper's bisection case. Other surfaces that the ray met are the
+    /// straight-forward case.
+    bisection_cases,
+    /// Coherent clipping: points not verified because the ray is critical, by eq. (1), in the patch that holds them, or
+    /// because no listed patch holds them.
+    refused_as_critical,
+    /// Coherent clipping: points not verified because the testing ray meets another patch.
+    refused_by_list,
+    /// Of those: the other patch only adjoins the one that holds the point.
+    refused_by_neighbour,
 }
 
 /// The bound that ran out.
@@ -180,6 +216,14 @@ pub enum Limit {
     Voxels,
     /// [`Limits::newton_steps`].
     NewtonSteps,
+    /// [`Limits::clip_steps`].
+    ClipSteps,
+    /// [`Limits::bisections`].
+    Bisections,
+    /// [`Limits::pending_domains`], or the room for them in the scratch.
+    PendingDomains,
+    /// The caller's list of hits is full.
+    Hits,
     /// The scratch is too small for a surface of these degrees: its capacities are the owner's choice.
     Scratch,
     /// Coherence memory with fewer slots than surfaces.
@@ -197,6 +241,10 @@ impl Limit {
             Limit::Patches => "patches",
             Limit::Voxels => "voxels",
             Limit::NewtonSteps => "newton-steps",
+            Limit::ClipSteps => "clip-steps",
+            Limit::Bisections => "bisections",
+            Limit::PendingDomains => "pending-domains",
+            Limit::Hits => "hits",
             Limit::Scratch => "scratch",
             Limit::Memory => "memory",
             Limit::Slot => "slot",

@@ -7,10 +7,11 @@
 //! ([`Net::bend`](crate::surface::Net::bend)), so the last step needs no evaluation after it. A small step alone is never
 //! enough.
 
-use crate::bernstein::{self, BasisView, Full};
+use crate::bernstein::{self, BasisView, Full, Jet};
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::planes::{Planes, project_net};
 use crate::point::{Flat, Point};
+use crate::ray::Hit;
 use crate::scalar::Scalar;
 use crate::surface::Surface;
 use heapless::vec::VecView;
@@ -28,10 +29,82 @@ pub struct Root<S> {
     pub grazing: bool,
 }
 
-/// Where an iteration ended.
-struct Place<S> {
-    at: [S; 2],
-    grazing: bool,
+impl<S> Root<S> {
+    /// The root as a hit, at the ray's parameter `t`, of a surface.
+    #[inline(always)]
+    pub(crate) fn hit(self, surface: u32, t: S) -> Hit<S> {
+        Hit { t, u: self.u, v: self.v, surface, grazing: self.grazing }
+    }
+}
+
+/// The projected surface near a point, to first order: what one step of Newton's method is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Local<S> {
+    f_g: [S; 2],
+    du: [S; 2],
+    dv: [S; 2],
+    determinant: S,
+    /// The product of the derivatives' lengths.
+    size: S,
+    /// The weight at the point: all else is multiplied by it.
+    pub(crate) weight: S,
+}
+
+impl<S: Scalar> Local<S> {
+    #[inline(always)]
+    pub(crate) fn of<F: Flat<Scalar = S>>(jet: &Jet<F>) -> Self {
+        let (f_g, [fu, gu], [fv, gv]) = (jet.point.f_g(), jet.du.f_g(), jet.dv.f_g());
+        let determinant = fu * gv - gu * fv;
+        let size = (fu.abs() + gu.abs()) * (fv.abs() + gv.abs());
+        Local { f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight: jet.point.weight() }
+    }
+
+    /// |f| + |g|, times the weight.
+    #[inline(always)]
+    pub(crate) fn residual(&self) -> S {
+        let [f, g] = self.f_g;
+        f.abs() + g.abs()
+    }
+
+    /// Whether the ray is tangent to working precision.
+    #[inline(always)]
+    pub(crate) fn is_tangent(&self) -> bool {
+        self.determinant.abs() < tangent::<S>() * self.size
+    }
+
+    /// The step to where both distances would be 0; `None` if the Jacobian is singular to working precision.
+    #[inline(always)]
+    pub(crate) fn step(&self) -> Option<[S; 2]> {
+        if self.determinant.abs() <= S::EPSILON * self.size {
+            return None;
+        }
+        let inverse = S::ONE / self.determinant;
+        let ([f, g], [fu, gu], [fv, gv]) = (self.f_g, self.du, self.dv);
+        Some([(fv * g - gv * f) * inverse, (gu * f - fu * g) * inverse])
+    }
+
+    /// How far in u and in v the inverse of the Jacobian carries an error of this length in f and g, times the weight.
+    #[inline(always)]
+    pub(crate) fn inverse_bounds(&self, error: S) -> [S; 2] {
+        let ([fu, gu], [fv, gv]) = (self.du, self.dv);
+        let share = error / self.determinant.abs();
+        [(fv.abs() + gv.abs()) * share, (fu.abs() + gu.abs()) * share]
+    }
+
+    /// Whether a root may be held back by `off`, in u and v, from where the step leads: not judged by parameters, but by how
+    /// far the ray sees the point move.
+    #[inline(always)]
+    pub(crate) fn may_hold(&self, off: [S; 2], tolerance: S) -> bool {
+        let ([fu, gu], [fv, gv]) = (self.du, self.dv);
+        let moved = off[0].abs() * (fu.abs() + gu.abs()) + off[1].abs() * (fv.abs() + gv.abs());
+        moved <= (tolerance + noise()) * S::TWO * self.weight
+    }
+}
+
+/// Where a search ended: (u, v), and whether the ray is tangent there.
+pub(crate) struct Place<S> {
+    pub(crate) at: [S; 2],
+    pub(crate) grazing: bool,
 }
 
 /// One ray and one surface.
@@ -96,14 +169,11 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         for _ in 0..limits.newton_iterations {
             spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
             let jet = bernstein::jet(surface.net.degrees(), flat, [u, v], self.basis).map_err(|Full| Limit::Scratch)?;
-            let ([f, g], [fu, gu], [fv, gv]) = (jet.point.f_g(), jet.du.f_g(), jet.dv.f_g());
-            let residual = f.abs() + g.abs();
-            let determinant = fu * gv - gu * fv;
-            let size = (fu.abs() + gu.abs()) * (fv.abs() + gv.abs());
+            let local = Local::of(&jet);
+            let residual = local.residual();
             // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
-            if residual <= noise::<P::Scalar>() * jet.point.weight() {
-                let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
-                return Ok(Some(Place { at: [u, v], grazing }));
+            if residual <= noise::<P::Scalar>() * local.weight {
+                return Ok(Some(Place { at: [u, v], grazing: local.is_tangent() }));
             }
             // Damping. A NaN counts as growth.
             if !(residual < last) {
@@ -115,31 +185,20 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
                 (u, v) = (from_u + step_u, from_v + step_v);
                 continue;
             }
-            if determinant.abs() <= P::Scalar::EPSILON * size {
+            let Some([du, dv]) = local.step() else {
                 return Ok(None);
-            }
-            let inverse = one / determinant;
-            let du = (fv * g - gv * f) * inverse;
-            let dv = (gu * f - fu * g) * inverse;
+            };
             let (next_u, next_v) = (u + du, v + dv);
-            let [bend_uu, bend_uv, bend_vv] = surface.bend;
-            let left = bend_uu * (du * du) + bend_uv * (du * dv).abs() + bend_vv * (dv * dv);
-            if left <= limits.tolerance {
+            let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
+            if surface.strays([du, dv]) <= limits.tolerance {
                 // Converged; what is left to see is whether the root lies on the surface or beyond its edge. Of a root on
-                // an edge the step may leave as much on the far side as on the near: neighbours must not both refuse it,
-                // so this is judged by how far the ray sees the point move when it is held, not by parameters.
-                let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
-                let (off_u, off_v) = ((next_u - held_u).abs(), (next_v - held_v).abs());
-                let moved = off_u * (fu.abs() + gu.abs()) + off_v * (fv.abs() + gv.abs());
-                let allowed = (limits.tolerance + noise()) * P::Scalar::TWO * jet.point.weight();
-                if !(moved <= allowed) {
+                // an edge the step may leave as much on the far side as on the near: neighbours must not both refuse it.
+                if !local.may_hold([next_u - held_u, next_v - held_v], limits.tolerance) {
                     return Ok(None);
                 }
-                let grazing = determinant.abs() < tangent::<P::Scalar>() * size;
-                return Ok(Some(Place { at: [held_u, held_v], grazing }));
+                return Ok(Some(Place { at: [held_u, held_v], grazing: local.is_tangent() }));
             }
             // An iterate outside is held at the edge, where a root may lie; one that goes on as far is leaving for good.
-            let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
             let beyond = (next_u - held_u).abs() + (next_v - held_v).abs();
             if !(beyond + beyond <= beyond_before) {
                 return Ok(None);
@@ -155,7 +214,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
 
 /// Residuals up to this, in the frame, are rounding of the evaluation: a few sums of numbers below 1.
 #[inline(always)]
-fn noise<S: Scalar>() -> S {
+pub(crate) fn noise<S: Scalar>() -> S {
     S::EPSILON * S::TWO
 }
 

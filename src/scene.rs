@@ -261,64 +261,77 @@ impl<'m, P: Point> Scene<'m, P> {
             &mut Work,
         ) -> Result<Option<Root<P::Scalar>>, Limit>,
     ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-        *work = Work::default();
-        let Some((planes, range)) = self.header.frame.enter(ray, interval) else {
-            return Ok(None);
-        };
-        let (origin, inverse) = (planes.origin(), planes.inverse());
-        let mut best: Option<(Root<P::Scalar>, u32)> = None;
-        let mut farthest = range.max;
-        let mut trace = || -> Result<(), Limit> {
-            let grid = Grid::new(&self.header.grid, self.offsets, self.references).ok_or(Limit::Slot)?;
-            let mut walk = grid.walk(&origin, &inverse, range.max);
-            // Ends with the walk, or where no later voxel can hold a closer root.
-            while let Some(voxel) = walk.advance() {
-                let mut voxel = voxel.map_err(|()| Limit::Slot)?;
-                spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
-                while let Some(number) = voxel.next_fresh() {
-                    let slot = self.surfaces.get(number).ok_or(Limit::Slot)?;
-                    spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
-                    let Some((near, far)) = slot.bounds.depths(&origin, &inverse) else {
-                        continue;
-                    };
-                    let within = DepthRange { min: near.greater(range.min), max: far.lesser(farthest) };
-                    if !(within.min <= within.max) {
-                        continue;
-                    }
-                    let surface = self.surface(number).ok_or(Limit::Slot)?;
-                    let Some(root) = search(&surface, &planes, within, work)? else {
-                        continue;
-                    };
-                    // Of equal depths the lower number wins, so that the answer does not depend on the order of search.
-                    let closer = match best {
-                        Some((old, other)) => {
-                            root.depth < old.depth || (root.depth == old.depth && surface.number < other)
-                        }
-                        None => true,
-                    };
-                    if closer {
-                        best = Some((root, surface.number));
-                        farthest = farthest.lesser(root.depth);
-                    }
-                }
-                if voxel.exit >= farthest {
-                    break;
-                }
+        let mut best: Option<(Root<P::Scalar>, u32, P::Scalar)> = None;
+        let ended = self.visit(ray, interval, limits, work, |surface, planes, within, work| {
+            let Some(root) = search(surface, planes, within, work)? else {
+                return Ok(P::Scalar::INFINITY);
+            };
+            // Of equal depths the lower number wins, so that the answer does not depend on the order of search.
+            let closer = match best {
+                Some((old, other, _)) => root.depth < old.depth || (root.depth == old.depth && surface.number < other),
+                None => true,
+            };
+            if closer {
+                best = Some((root, surface.number, planes.t(root.depth)));
             }
-            Ok(())
-        };
-        let ended = trace();
-        let best = best.map(|(root, surface)| Hit {
-            t: planes.t(root.depth),
-            u: root.u,
-            v: root.v,
-            surface,
-            grazing: root.grazing,
+            Ok(root.depth)
         });
+        let best = best.map(|(root, surface, t)| root.hit(surface, t));
         match ended {
             Ok(()) => Ok(best),
             Err(limit) => Err(GaveUp { limit, best }),
         }
+    }
+
+    /// Every surface whose box a ray meets in its interval, once each, about front to back.
+    ///
+    /// `search` is given a surface, the ray's planes and the range of depths in which a root matters, and returns the
+    /// farthest depth that matters from then on: infinity to go on as before, [`Scalar::LEAST`] to end. `work` is set to
+    /// what this call did.
+    #[inline(always)]
+    pub fn visit(
+        &self,
+        ray: &Ray<P::Scalar>,
+        interval: &Interval<P::Scalar>,
+        limits: &Limits<P::Scalar>,
+        work: &mut Work,
+        mut search: impl FnMut(
+            &Surface<'m, P>,
+            &Planes<P::Scalar>,
+            DepthRange<P::Scalar>,
+            &mut Work,
+        ) -> Result<P::Scalar, Limit>,
+    ) -> Result<(), Limit> {
+        *work = Work::default();
+        let Some((planes, range)) = self.header.frame.enter(ray, interval) else {
+            return Ok(());
+        };
+        let (origin, inverse) = (planes.origin(), planes.inverse());
+        let mut farthest = range.max;
+        let grid = Grid::new(&self.header.grid, self.offsets, self.references).ok_or(Limit::Slot)?;
+        let mut walk = grid.walk(&origin, &inverse, range.max);
+        // Ends with the walk, or where no later voxel can hold a root that matters.
+        while let Some(voxel) = walk.advance() {
+            let mut voxel = voxel.map_err(|()| Limit::Slot)?;
+            spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
+            while let Some(number) = voxel.next_fresh() {
+                let slot = self.surfaces.get(number).ok_or(Limit::Slot)?;
+                spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
+                let Some((near, far)) = slot.bounds.depths(&origin, &inverse) else {
+                    continue;
+                };
+                let within = DepthRange { min: near.greater(range.min), max: far.lesser(farthest) };
+                if !(within.min <= within.max) {
+                    continue;
+                }
+                let surface = self.surface(number).ok_or(Limit::Slot)?;
+                farthest = farthest.lesser(search(&surface, &planes, within, work)?);
+            }
+            if voxel.exit >= farthest {
+                break;
+            }
+        }
+        Ok(())
     }
 }
 

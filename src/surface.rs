@@ -5,7 +5,8 @@
 //! Source: G. Farin, "Curves and Surfaces for CAGD", chapters on Bernstein form, de Casteljau and rational surfaces.
 
 use crate::arena::Need;
-use crate::bernstein::{self, BasisView, Degrees, Full, Jet, Linear, MAX_DEGREE, restrict_line};
+pub use crate::bernstein::Direction;
+use crate::bernstein::{self, BasisView, Degrees, Full, Jet, Linear, MAX_DEGREE};
 use crate::point::Point;
 use crate::scalar::{Scalar, Vector3};
 use heapless::vec::VecView;
@@ -44,15 +45,6 @@ impl core::error::Error for NetError {}
 pub struct Net<'m, P> {
     degrees: Degrees,
     points: &'m [P],
-}
-
-/// One of the two parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// The outer index of the net.
-    U,
-    /// The inner index of the net.
-    V,
 }
 
 impl<'m, P: Point> Net<'m, P> {
@@ -235,13 +227,8 @@ impl<'m, P: Point> Net<'m, P> {
     pub fn restrict(&self, u: [P::Scalar; 2], v: [P::Scalar; 2], out: &mut VecView<P>) -> Result<(), Full> {
         out.clear();
         out.extend_from_slice(self.points).map_err(|_| Full)?;
-        let (rows, columns) = (self.degrees.rows(), self.degrees.columns());
-        for column in 0..columns {
-            restrict_line(out, column, columns, rows, u);
-        }
-        for row in 0..rows {
-            restrict_line(out, row * columns, 1, columns, v);
-        }
+        bernstein::restrict(self.degrees, out, Direction::U, u);
+        bernstein::restrict(self.degrees, out, Direction::V, v);
         Ok(())
     }
 
@@ -265,6 +252,22 @@ pub struct Surface<'m, P: Point> {
     pub net: Net<'m, P>,
     /// See [`Net::bend`].
     pub bend: [P::Scalar; 3],
+}
+
+impl<P: Point> Surface<'_, P> {
+    /// How far from the ray one Newton step of (du, dv) may lead, whatever the ray and the place: see [`Net::bend`].
+    #[inline(always)]
+    pub fn strays(&self, [du, dv]: [P::Scalar; 2]) -> P::Scalar {
+        let [uu, uv, vv] = self.bend;
+        uu * (du * du) + uv * (du * dv).abs() + vv * (dv * dv)
+    }
+
+    /// Whether two points where a ray meets the surface are one to within `tolerance`: if on the way from one to the other,
+    /// in (u, v), the surface strays from the ray by no more.
+    pub fn same_root(&self, a: [P::Scalar; 2], b: [P::Scalar; 2], tolerance: P::Scalar) -> bool {
+        // Between two zeros, a function whose second-order part over the whole way is s strays by a quarter of it at most.
+        self.strays([a[0] - b[0], a[1] - b[1]]) <= tolerance * P::Scalar::from_u32(4)
+    }
 }
 
 impl<P: Point> Net<'_, P> {

@@ -2,9 +2,10 @@
 //!
 //! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm". The testing ray walks the grid and
 //! meets patches; the caller learns of each as it is met, so that no list is stored (a departure in order only).
+//! Newton's methods decide by the list ([`testing_ray`]), the clipping methods ask for yes or no ([`verdict`]).
 
 use crate::grid::Grid;
-use crate::limits::{Limit, Limits, Work};
+use crate::limits::{Acceptance, Limit, Limits, Work};
 use crate::newton::Root;
 use crate::patch::{Crossing, Patch};
 use crate::planes::{DepthRange, Planes};
@@ -23,7 +24,7 @@ pub struct Listed<'p, S> {
 }
 
 /// Sends a testing ray from `root` back to depth `nearest`, and calls `visit` with each patch of `patches` whose box it
-/// meets, once each, from the point toward the origin.
+/// meets, once each, from the point toward the origin, as long as `visit` says so.
 #[inline(always)]
 pub fn testing_ray<S: Scalar>(
     grid: &Grid<'_, S>,
@@ -33,18 +34,74 @@ pub fn testing_ray<S: Scalar>(
     nearest: S,
     limits: &Limits<S>,
     work: &mut Work,
-    mut visit: impl FnMut(&Listed<'_, S>, &mut Work) -> Result<(), Limit>,
+    mut visit: impl FnMut(&Listed<'_, S>, &mut Work) -> Result<bool, Limit>,
 ) -> Result<(), Limit> {
     let inverse = planes.inverse().map(|c| -c);
     let range = DepthRange { min: nearest, max: root.depth };
     let walk = grid.walk(&planes.at(root.depth), &inverse, root.depth - nearest);
+    let mut go_on = true;
     sweep(walk, patches, planes, limits, work, |patch, crossing, work| {
         let owner = patch.domain().holds(root.u, root.v);
         // The owner's box holds the point; another's counts if it reaches between point and origin.
-        if owner || reaches(crossing, &range) {
-            visit(&Listed { patch, crossing, owner }, work)?;
+        if go_on && (owner || reaches(crossing, &range)) {
+            go_on = visit(&Listed { patch, crossing, owner }, work)?;
         }
-        Ok(S::INFINITY)
+        Ok(if go_on { S::INFINITY } else { S::LEAST })
+    })
+}
+
+/// Whether the ray is taken to meet the patch once at most.
+#[inline(always)]
+pub fn met_at_most_once<S: Scalar>(patch: &Patch<S>, crossing: &Crossing<S>, limits: &Limits<S>) -> bool {
+    match limits.acceptance {
+        Acceptance::Paper => !patch.is_critical(crossing, limits.critical_factor),
+        Acceptance::Proved => patch.at_most_once(crossing),
+    }
+}
+
+/// What the testing ray says of a point, without Newton's method: yes, or why not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// No point of the surface lies before it.
+    Closest,
+    /// The ray may meet the patch that holds it more than once; or, ours, no listed patch holds it.
+    Critical,
+    /// Another patch lies between it and the origin.
+    Hidden {
+        /// That patch only adjoins the one that holds the point: boxes of neighbours overlap at their border.
+        by_neighbour: bool,
+    },
+}
+
+/// The testing ray's answer, yes or no, for `root`: the clipping methods' verification.
+///
+/// Source: the paper's section "An Improvement of Bézier Clipping".
+pub fn verdict<S: Scalar>(
+    grid: &Grid<'_, S>,
+    patches: &[Patch<S>],
+    planes: &Planes<S>,
+    root: &Root<S>,
+    nearest: S,
+    limits: &Limits<S>,
+    work: &mut Work,
+) -> Result<Verdict, Limit> {
+    let mut owner = None;
+    let mut critical = false;
+    let mut other = None;
+    testing_ray(grid, patches, planes, root, nearest, limits, work, |listed, _| {
+        if listed.owner {
+            owner = Some(listed.patch.domain());
+            critical = !met_at_most_once(listed.patch, listed.crossing, limits);
+        } else if other.is_none() {
+            other = Some(listed.patch.domain());
+        }
+        Ok(!critical && (owner.is_none() || other.is_none()))
+    })?;
+    Ok(match (owner, other) {
+        _ if critical => Verdict::Critical,
+        (None, _) => Verdict::Critical,
+        (Some(_), None) => Verdict::Closest,
+        (Some(owner), Some(other)) => Verdict::Hidden { by_neighbour: owner.adjoins(other) },
     })
 }
 

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Kind, Prepared, direction};
 use patchray::limits::{Extent, GaveUp, Limit, Limits, Work};
-use patchray::method::newton_coherent::Remembered;
+use patchray::method::Remembered;
 use patchray::method::{Scratch, newton, newton_coherent};
 use patchray::point::Plain;
 use patchray::ray::{Hit, Interval, Ray};

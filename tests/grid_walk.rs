@@ -51,7 +51,7 @@ where
     let limits = Limits::default();
     let control_box = model.control_box().unwrap();
     let mut random = Random(seed);
-    let mut memory = vec![newton_coherent::Remembered::EMPTY; scene.len()];
+    let mut memory = vec![patchray::method::Remembered::EMPTY; scene.len()];
     let mut scratch = Scratch::<Plain<S>, 16, 256>::new();
     let (mut misses, mut tested) = (0_u32, 0_u64);
     for number in 0..rays {

@@ -8,7 +8,7 @@ use patchray::arena::Need;
 use patchray::bernstein::Basis;
 use patchray::grid::{GridError, GridMemory, GridNeeds, GridOptions, GridSlot, Grids};
 use patchray::limits::{Acceptance, GaveUp, Limit, Limits, Work};
-use patchray::method::newton_coherent::Remembered;
+use patchray::method::Remembered;
 use patchray::method::{Scratch, newton, newton_coherent};
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::{Plain, Point, Weighted};

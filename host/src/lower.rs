@@ -6,8 +6,8 @@
 use miette::Diagnostic;
 use patchray::bernstein::MAX_DEGREE;
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
+use patchray::method::Remembered;
 use patchray::method::Scratch;
-use patchray::method::newton_coherent::Remembered;
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::{Plain, Point, Weighted};
 use patchray::scalar::Scalar;

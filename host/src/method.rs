@@ -2,7 +2,7 @@
 
 use patchray::grid::Grids;
 use patchray::limits::{GaveUp, Limits, Work};
-use patchray::method::newton_coherent::{self, Remembered};
+use patchray::method::{Remembered, newton_coherent};
 use patchray::method::{ScratchView, newton};
 use patchray::patch::Patches;
 use patchray::point::Point;

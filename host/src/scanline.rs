@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use patchray::bernstein::Basis;
 use patchray::limits::{Limits, Work};
+use patchray::method::Remembered;
 use patchray::method::Scratch;
-use patchray::method::newton_coherent::Remembered;
 use patchray::ray::{Hit, Interval, RayError};
 use patchray::scalar::Scalar as _;
 use rayon::prelude::*;

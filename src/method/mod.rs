@@ -2,14 +2,19 @@
 //!
 //! Choices of ours that the paper leaves open are marked "ours"; where we do otherwise, "a departure".
 
+pub mod clipping;
+pub mod clipping_coherent;
+mod collect;
 pub mod newton;
 pub mod newton_coherent;
 mod starts;
 
 use crate::bernstein::{Basis, BasisView};
+use crate::clipper::ClipRoom;
 use crate::newton::Root;
 use crate::planes::Planes;
 use crate::point::Point;
+use crate::region::Region;
 use crate::scalar::Scalar;
 use heapless::vec::{Vec, VecView};
 
@@ -46,6 +51,75 @@ pub struct ScratchView<'s, P: Point> {
     pub flat: &'s mut VecView<P::Flat>,
     /// Room for evaluating a surface.
     pub basis: BasisView<'s, P::Scalar>,
+}
+
+/// What one thread needs per ray, whichever of the clipping methods it traces with. `ORDER` is the highest degree + 1,
+/// `POINTS` the most control points of a surface, (n + 1)(m + 1), `PENDING` the most domains that wait to be clipped, of
+/// which a bisection adds one: 64 hold more than numbers of 53 bits can be halved apart.
+#[derive(Debug)]
+pub struct ClipScratch<P: Point, const ORDER: usize, const POINTS: usize, const PENDING: usize> {
+    whole: Vec<P::Flat, POINTS>,
+    part: Vec<P::Flat, POINTS>,
+    pending: Vec<Region<P::Scalar>, PENDING>,
+    roots: Vec<Root<P::Scalar>, ROOTS>,
+    basis: Basis<P::Scalar, ORDER>,
+}
+
+/// Roots of one surface that are kept to tell whether one was found before: two bicubics meet a line 18 times at most.
+const ROOTS: usize = 18;
+
+impl<P: Point, const ORDER: usize, const POINTS: usize, const PENDING: usize> ClipScratch<P, ORDER, POINTS, PENDING> {
+    /// Empty scratch, usable in a static.
+    pub const fn new() -> Self {
+        ClipScratch { whole: Vec::new(), part: Vec::new(), pending: Vec::new(), roots: Vec::new(), basis: Basis::new() }
+    }
+
+    /// The view that the methods take.
+    pub fn view(&mut self) -> ClipRoom<'_, P> {
+        ClipRoom {
+            whole: &mut self.whole,
+            part: &mut self.part,
+            pending: &mut self.pending,
+            roots: &mut self.roots,
+            basis: self.basis.view(),
+        }
+    }
+}
+
+impl<P: Point, const ORDER: usize, const POINTS: usize, const PENDING: usize> Default
+    for ClipScratch<P, ORDER, POINTS, PENDING>
+{
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Coherence memory: what the previous ray of a scan line left on one surface. A slot of memory that the caller lends, one
+/// per surface and thread.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Remembered<S> {
+    u: S,
+    v: S,
+    /// The scan line that it belongs to, plus one; 0 holds nothing. So nothing need be cleared between scan lines.
+    stamp: u32,
+}
+
+impl<S: Scalar> Remembered<S> {
+    /// What a slot holds before it is filled.
+    pub const EMPTY: Self = Remembered { u: S::ZERO, v: S::ZERO, stamp: 0 };
+
+    /// What a ray leaves: the point that it found; after a miss nothing.
+    #[inline(always)]
+    fn of(found: Option<Root<S>>, stamp: u32) -> Self {
+        found.map_or(Self::EMPTY, |root| Remembered { u: root.u, v: root.v, stamp })
+    }
+
+    /// (u, v) of the previous ray's point, if it was of this scan line.
+    #[inline(always)]
+    fn recall(&self, stamp: u32) -> Option<[S; 2]> {
+        if self.stamp == stamp && stamp != 0 { Some([self.u, self.v]) } else { None }
+    }
 }
 
 /// Counts a root as an intersection point if it lies in the ray's interval, and keeps it if it is closer.

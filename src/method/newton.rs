@@ -7,7 +7,7 @@
 //! Source: Barth and Stürzlinger (1993); the paper's section "Barth and Stürzlinger's Algorithm".
 
 use super::starts::{First, from_patch};
-use super::{ScratchView, keep_closest};
+use super::{ScratchView, collect, keep_closest};
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::newton::{Root, Solver};
 use crate::patch::Patches;
@@ -17,6 +17,7 @@ use crate::ray::{Hit, Interval, Ray};
 use crate::scene::Scene;
 use crate::surface::Surface;
 use crate::tree::Tree;
+use heapless::vec::VecView;
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
 ///
@@ -33,12 +34,65 @@ pub fn closest<P: Point>(
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
-        search(surface, patches, tree, planes, range, limits, scratch, work)
+        let mut best = None;
+        roots(surface, patches, tree, planes, range, limits, scratch, work, |root, work| {
+            keep_closest(&mut best, root, planes, &mut work.intersection_points);
+            true
+        })?;
+        Ok(best)
     })
 }
 
-/// All patches of one surface along the ray, through its binary tree; the closest root.
-fn search<P: Point>(
+/// All hits of `ray` in `interval` that Newton's method finds, into `hits` (whose old content is dropped), in order of t. A
+/// point on an edge that surfaces share is a hit of each.
+///
+/// Complete only as far as each patch is met once at most, and its starts lead to that root: of two roots on one patch it
+/// finds one. [`clipping::all_hits`](super::clipping::all_hits) finds all. More hits than the list holds are
+/// [`Limit::Hits`]; it then holds the closest. `work` is set to what the call did.
+pub fn all_hits<P: Point>(
+    scene: &Scene<'_, P>,
+    patches: &Patches<'_, P::Scalar>,
+    tree: &Tree<'_, P::Scalar>,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P>,
+    hits: &mut VecView<Hit<P::Scalar>>,
+    work: &mut Work,
+) -> Result<(), GaveUp<P::Scalar>> {
+    collect::all_hits(scene, ray, interval, limits, hits, work, |surface, planes, range, all, work| {
+        roots(surface, patches, tree, planes, range, limits, scratch, work, |root, work| {
+            all.add(root, surface, planes, limits.tolerance, &mut work.intersection_points);
+            true
+        })
+    })
+}
+
+/// A hit of `ray` in `interval`, the first that is found, not the closest. A miss is not proved, as in [`closest`]. `work`
+/// is set to what the call did.
+pub fn any_hit<P: Point>(
+    scene: &Scene<'_, P>,
+    patches: &Patches<'_, P::Scalar>,
+    tree: &Tree<'_, P::Scalar>,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    collect::any_hit(scene, ray, interval, limits, work, |surface, planes, range, work| {
+        let mut any = None;
+        roots(surface, patches, tree, planes, range, limits, scratch, work, |root, work| {
+            keep_closest(&mut any, root, planes, &mut work.intersection_points);
+            any.is_none()
+        })?;
+        Ok(any)
+    })
+}
+
+/// The roots from all patches of one surface along the ray, through its binary tree, to `found`, which says whether to go on.
+#[inline(always)]
+fn roots<P: Point>(
     surface: &Surface<'_, P>,
     patches: &Patches<'_, P::Scalar>,
     tree: &Tree<'_, P::Scalar>,
@@ -47,19 +101,21 @@ fn search<P: Point>(
     limits: &Limits<P::Scalar>,
     scratch: &mut ScratchView<'_, P>,
     work: &mut Work,
-) -> Result<Option<Root<P::Scalar>>, Limit> {
+    mut found: impl FnMut(Root<P::Scalar>, &mut Work) -> bool,
+) -> Result<(), Limit> {
     let number = surface.number as usize;
     let mut descent = tree.of_surface(patches, number).ok_or(Limit::Slot)?;
     let mut solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
-    let mut best = None;
     // Ends with the tree.
     while let Some((patch, crossing)) = descent.next_patch(planes, limits, work)? {
         if !crossing.overlaps(&range) {
             continue;
         }
         if let Some(root) = from_patch(&mut solver, patch, &crossing, First::AsCritical, work)? {
-            keep_closest(&mut best, root, planes, &mut work.intersection_points);
+            if !found(root, work) {
+                break;
+            }
         }
     }
-    Ok(best)
+    Ok(())
 }

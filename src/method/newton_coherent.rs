@@ -12,34 +12,18 @@
 //! - ours: a point that no listed patch holds cannot be judged, and the surface is searched in full.
 
 use super::starts::{First, from_patch};
-use super::{ScratchView, keep_closest};
+use super::{Remembered, ScratchView, keep_closest};
 use crate::grid::{Grid, Grids};
-use crate::limits::{Acceptance, GaveUp, Limit, Limits, Work};
+use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::newton::{Root, Solver};
-use crate::patch::{Crossing, Patch, Patches};
+use crate::patch::{Patch, Patches};
 use crate::planes::DepthRange;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::sweep::sweep;
-use crate::verify::testing_ray;
-
-/// Coherence memory: what the previous ray of a scan line left on one surface. A slot of memory that the caller lends, one
-/// per surface and thread.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Remembered<S> {
-    u: S,
-    v: S,
-    /// The scan line that it belongs to, plus one; 0 holds nothing. So nothing need be cleared between scan lines.
-    stamp: u32,
-}
-
-impl<S: Scalar> Remembered<S> {
-    /// What a slot holds before it is filled.
-    pub const EMPTY: Self = Remembered { u: S::ZERO, v: S::ZERO, stamp: 0 };
-}
+use crate::verify::{met_at_most_once, testing_ray};
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
 ///
@@ -66,15 +50,11 @@ pub fn closest<P: Point>(
         let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
         let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
         let mut search = Search { solver, patches, grid, range };
-        let previous = if slot.stamp == stamp && stamp != 0 { Some([slot.u, slot.v]) } else { None };
-        let found = match search.resume(previous, work)? {
+        let found = match search.resume(slot.recall(stamp), work)? {
             Some(root) => Some(root),
             None => search.in_full(work)?,
         };
-        *slot = match found {
-            Some(root) => Remembered { u: root.u, v: root.v, stamp },
-            None => Remembered::EMPTY,
-        };
+        *slot = Remembered::of(found, stamp);
         // A point behind the closest hit so far, or behind the interval, verified, proves a miss before it. It is not held
         // against the surface's box: a root may lie off by Newton's tolerance, which is more than a thin box's padding.
         Ok(found.filter(|root| planes.t_in_interval(root.depth).is_some()))
@@ -117,14 +97,14 @@ impl<P: Point> Search<'_, '_, '_, P> {
             if listed.owner {
                 owners += 1;
                 if met_at_most_once(listed.patch, listed.crossing, limits) {
-                    return Ok(());
+                    return Ok(true);
                 }
             }
             alone = false;
             if let Some(root) = from_patch(solver, listed.patch, listed.crossing, First::Entrance, work)? {
                 keep_closest(&mut closest, root, planes, &mut work.intersection_points);
             }
-            Ok(())
+            Ok(true)
         })?;
         if owners == 0 {
             return Ok(None);
@@ -156,14 +136,5 @@ impl<P: Point> Search<'_, '_, '_, P> {
             Ok(best.map_or(P::Scalar::INFINITY, |root| root.depth - begin))
         })?;
         Ok(best)
-    }
-}
-
-/// Whether the ray is taken to meet the patch once at most.
-#[inline(always)]
-fn met_at_most_once<S: Scalar>(patch: &Patch<S>, crossing: &Crossing<S>, limits: &Limits<S>) -> bool {
-    match limits.acceptance {
-        Acceptance::Paper => !patch.is_critical(crossing, limits.critical_factor),
-        Acceptance::Proved => patch.at_most_once(crossing),
     }
 }

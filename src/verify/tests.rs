@@ -38,7 +38,7 @@ fn the_list_holds_what_lies_between_point_and_origin_from_the_point_on() {
         let (mut listed, mut work) = (Vec::new(), Work::default());
         let end = testing_ray(&grid, &patches, &planes, &root, nearest, limits, &mut work, |item, _| {
             listed.push((patches.iter().position(|p| core::ptr::eq(p, item.patch)).unwrap(), item.owner));
-            Ok(())
+            Ok(true)
         });
         (end, listed, work)
     };

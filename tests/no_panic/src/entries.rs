@@ -9,7 +9,7 @@ use patchray::frame::{Aabb, Frame};
 use patchray::grid::{Grid, GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::limits::{Extent, GaveUp, Limit, Limits, Work};
 use patchray::measure::Measure;
-use patchray::method::newton_coherent::Remembered;
+use patchray::method::Remembered;
 use patchray::method::{Scratch, newton, newton_coherent};
 use patchray::newton::{Root, Solver};
 use patchray::patch::Patches;

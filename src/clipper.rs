@@ -1,0 +1,334 @@
+//! Bézier clipping of one surface and one ray: clips, bisections, and the regions that wait.
+//!
+//! A region's u and v are clipped in turn. If a clip removes less than the threshold, the region is bisected: of two roots no
+//! clip parts one from the other. A region so small that one step of Newton's method from its middle is exact is done with by
+//! that step; if the step leads out of the region, nothing is decided, and clipping goes on.
+//!
+//! Source: T. Nishita, T. W. Sederberg and M. Kakimoto, "Ray tracing trimmed rational surface patches", SIGGRAPH 1990; the
+//! paper's sections "Clipping Process of Bézier Clipping" and "An Improvement of Bézier Clipping". The last step by Newton's
+//! method is a departure: it stands for the last clip in each parameter, and refuses the phantom hits that Campagna,
+//! Slusallek and Seidel (1997) found, where a region shrinks to a point that the ray passes by.
+
+use crate::bernstein::{self, BasisView, Degrees, Direction, Full, Linear};
+use crate::clip::{Clip, Noise, clip, normal};
+use crate::limits::{Limit, Limits, Work, spend};
+use crate::newton::{Local, Place, Root, noise};
+use crate::planes::{Planes, project_net};
+use crate::point::{Flat, Point};
+use crate::region::{Order, Region};
+use crate::scalar::Scalar;
+use crate::surface::Surface;
+use heapless::vec::VecView;
+
+/// Room for clipping one surface.
+#[derive(Debug)]
+pub struct ClipRoom<'s, P: Point> {
+    /// For the projected net of the surface.
+    pub whole: &'s mut VecView<P::Flat>,
+    /// For that of the region at hand.
+    pub part: &'s mut VecView<P::Flat>,
+    /// For regions that wait; its capacity bounds them, as [`Limits::pending_domains`] does.
+    pub pending: &'s mut VecView<Region<P::Scalar>>,
+    /// For the roots found so far, so that one found from two regions counts once. Those for which there is no room may
+    /// be found again.
+    pub roots: &'s mut VecView<Root<P::Scalar>>,
+    /// For evaluating the surface.
+    pub basis: BasisView<'s, P::Scalar>,
+}
+
+/// One ray and one surface.
+#[derive(Debug)]
+pub struct Clipper<'a, 's, 'm, P: Point> {
+    /// The surface.
+    pub surface: &'a Surface<'m, P>,
+    /// The ray.
+    pub planes: &'a Planes<P::Scalar>,
+    /// Bounds on the work.
+    pub limits: &'a Limits<P::Scalar>,
+    /// What it works in.
+    pub room: &'a mut ClipRoom<'s, P>,
+}
+
+/// The net of a region, in lent room, and the region that it is of.
+struct Part<'a, F: Flat> {
+    region: Region<F::Scalar>,
+    degrees: Degrees,
+    net: &'a mut [F],
+    /// By how much the net's coefficients may be off.
+    error: F::Scalar,
+}
+
+impl<F: Flat> Part<'_, F> {
+    /// To a region of the surface: from what it is, if that holds it, else from the whole again.
+    fn become_region(&mut self, whole: &[F], region: Region<F::Scalar>) {
+        let holds = |outer: [F::Scalar; 2], inner: [F::Scalar; 2]| outer[0] <= inner[0] && inner[1] <= outer[1];
+        let old = self.region.sides;
+        let mut from = [[F::Scalar::ZERO, F::Scalar::ONE]; 2];
+        if holds(old[0], region.sides[0]) && holds(old[1], region.sides[1]) {
+            from = old;
+        } else {
+            self.net.iter_mut().zip(whole).for_each(|(slot, &point)| *slot = point);
+            self.error = projection_error();
+        }
+        for (direction, (outer, inner)) in
+            [Direction::U, Direction::V].into_iter().zip(from.into_iter().zip(region.sides))
+        {
+            if outer != inner {
+                let width = outer[1] - outer[0];
+                self.restrict(direction, inner.map(|c| (c - outer[0]) / width));
+            }
+        }
+        self.region = region;
+    }
+
+    /// To a part of itself, counted across it from 0 to 1.
+    #[inline(always)]
+    fn narrow(&mut self, direction: Direction, part: [F::Scalar; 2]) {
+        self.restrict(direction, part);
+        self.region.narrow(direction, part);
+    }
+
+    #[inline(always)]
+    fn restrict(&mut self, direction: Direction, part: [F::Scalar; 2]) {
+        let degree = match direction {
+            Direction::U => self.degrees.u,
+            Direction::V => self.degrees.v,
+        };
+        // Each of up to 2 · degree levels of de Casteljau's algorithm rounds a sum of two products.
+        let roundings = F::Scalar::from_u32(3 * u32::from(degree));
+        self.error += roundings * F::Scalar::EPSILON * reach(self.net);
+        bernstein::restrict(self.degrees, self.net, direction, part);
+    }
+
+    fn corners(&self) -> [F; 4] {
+        let row = self.degrees.columns() - 1;
+        let last = self.net.len().saturating_sub(1);
+        [0, last.saturating_sub(row), row, last].map(|k| self.net.get(k).copied().unwrap_or(F::ZERO))
+    }
+}
+
+/// The largest |f| or |g| of a projected net.
+#[inline(always)]
+fn reach<F: Flat>(net: &[F]) -> F::Scalar {
+    // Two points at a time, so that one comparison need not wait for another.
+    let mut most = [F::Scalar::ZERO; 4];
+    let mut pairs = net.chunks_exact(2);
+    let mut add = |points: [F; 2]| {
+        let [[f, g], [h, i]] = points.map(Flat::f_g);
+        most = [most[0].greater(f.abs()), most[1].greater(g.abs()), most[2].greater(h.abs()), most[3].greater(i.abs())];
+    };
+    for pair in &mut pairs {
+        if let &[p, q] = pair {
+            add([p, q]);
+        }
+    }
+    pairs.remainder().iter().for_each(|&p| add([p, p]));
+    most[0].greater(most[1]).greater(most[2].greater(most[3]))
+}
+
+/// By how much a projected coefficient may be off: some four roundings of numbers below 2.
+fn projection_error<S: Scalar>() -> S {
+    S::EPSILON * S::from_u32(4)
+}
+
+/// Whether f and g both take both signs, or nearly; if not, no point of the surface is on the ray.
+#[inline(always)]
+fn straddles<F: Flat>(net: &[F], error: F::Scalar) -> bool {
+    let none = [F::Scalar::INFINITY, F::Scalar::LEAST];
+    let [f, g] = net.iter().fold([none; 2], |[[f0, f1], [g0, g1]], point| {
+        let [f, g] = point.f_g();
+        [[f0.lesser(f), f1.greater(f)], [g0.lesser(g), g1.greater(g)]]
+    });
+    f[0] <= error && f[1] >= -error && g[0] <= error && g[1] >= -error
+}
+
+impl<P: Point> Clipper<'_, '_, '_, P> {
+    /// All points where the ray's line meets the surface, in `order`, to `found`; which also learns whether regions still
+    /// wait, and says whether to go on.
+    #[inline(always)]
+    pub fn roots(
+        &mut self,
+        mut order: Order<P::Scalar>,
+        work: &mut Work,
+        mut found: impl FnMut(Root<P::Scalar>, bool, &mut Work) -> Result<bool, Limit>,
+    ) -> Result<(), Limit> {
+        let Clipper { surface, planes, limits, room } = self;
+        let ClipRoom { whole, part, pending, roots, basis } = &mut **room;
+        let whole: &[P::Flat] = project_net(&surface.net, planes, whole).map_err(|Full| Limit::Scratch)?;
+        let error = projection_error();
+        if !straddles(whole, error) {
+            return Ok(());
+        }
+        if part.len() < whole.len() {
+            part.resize(whole.len(), P::Flat::ZERO).map_err(|_| Limit::Scratch)?;
+        }
+        let net = part.get_mut(..whole.len()).ok_or(Limit::Scratch)?;
+        for (slot, &point) in net.iter_mut().zip(whole) {
+            *slot = point;
+        }
+        pending.clear();
+        roots.clear();
+        let least = whole.iter().fold(P::Scalar::ONE, |least, point| least.lesser(point.weight()));
+        let tolerance = limits.tolerance * least;
+        let mut part = Part { region: Region::WHOLE, degrees: surface.net.degrees(), net, error };
+        // Whether the last clip, which was of the other parameter, found it settled.
+        let mut settled = false;
+        let mut bisected = false;
+        // Ends: each turn counts a clip against its budget.
+        loop {
+            spend(&mut work.clip_steps, limits.clip_steps, Limit::ClipSteps)?;
+            let direction = part.region.next;
+            part.region.next = direction.other();
+            let noise = Noise { error: part.error, tolerance };
+            let mut step = match clip(part.degrees, part.net, direction, normal(part.corners(), direction), &noise) {
+                Clip::Nothing => Step::Done(None),
+                Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
+                    part.narrow(direction, [from, to]);
+                    settled = false;
+                    contract(surface, whole, part.region, limits, basis, work)?
+                }
+                // A width that cannot be halved is as settled as one that need not be.
+                Clip::Part(_) => part.region.halves(direction).map_or(Step::Settled, Step::Bisect),
+                Clip::Settled => Step::Settled,
+            };
+            if let (Step::Settled, true) = (&step, settled) {
+                step = match nearest(surface, planes, whole, &part, tolerance, basis)? {
+                    // Between lines that are near parallel both clips may settle too soon.
+                    None => part.region.halves_of_wider().map_or(Step::Done(None), Step::Bisect),
+                    place => Step::Done(place),
+                };
+            }
+            let done = match step {
+                Step::On => continue,
+                Step::Settled => {
+                    settled = true;
+                    continue;
+                }
+                Step::Done(place) => place,
+                Step::Bisect([first, second]) => {
+                    spend(&mut work.bisections, limits.bisections, Limit::Bisections)?;
+                    work.bisection_cases += u32::from(!bisected);
+                    bisected = true;
+                    order.push(second, pending, limits.pending_domains)?;
+                    order.push(first, pending, limits.pending_domains)?;
+                    None
+                }
+            };
+            // A root on the border between two regions may be found in both.
+            let known = |at| roots.iter().any(|root| surface.same_root([root.u, root.v], at, limits.tolerance));
+            if let Some(Place { at, grazing }) = done.filter(|place| !known(place.at)) {
+                let depth = planes.depth_on(&surface.net, at, basis).map_err(|Full| Limit::Scratch)?;
+                let root = Root { u: at[0], v: at[1], depth, grazing };
+                if !found(root, !pending.is_empty(), work)? {
+                    return Ok(());
+                }
+                let _ = roots.push(root);
+            }
+            settled = false;
+            match order.pop(pending) {
+                Some(region) => part.become_region(whole, region),
+                None => return Ok(()),
+            }
+        }
+    }
+}
+
+/// What a clip leads to.
+enum Step<S> {
+    /// The next clip.
+    On,
+    /// The region's halves.
+    Bisect([Region<S>; 2]),
+    /// The clipped parameter cannot be told closer.
+    Settled,
+    /// The region is done with: where its root is, if it has one.
+    Done(Option<Place<S>>),
+}
+
+/// Regions wider than this, in u or in v, are clipped on without asking whether they hold one root at most: few would be
+/// proved to, and asking costs a third of a clip.
+const PROVABLE: f64 = 0.125;
+
+/// Newton's method, in a region that is proved to hold at most one root: ends with that root, or with the proof that there
+/// is none.
+///
+/// Over the region the surface departs from its linear part at the middle by at most σ ([`Surface::strays`]). With J the
+/// Jacobian there, the projection is injective on the region if J⁻¹ turns 2 σ into less than half a width in each
+/// parameter, and a root lies no farther than J⁻¹ turns σ into from where the step leads (R. Krawczyk, "Newton-Algorithmen
+/// zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4, 1969). So each step at least halves the region.
+#[inline(always)]
+fn contract<P: Point>(
+    surface: &Surface<'_, P>,
+    whole: &[P::Flat],
+    mut region: Region<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    basis: &mut BasisView<'_, P::Scalar>,
+    work: &mut Work,
+) -> Result<Step<P::Scalar>, Limit> {
+    let [width_u, width_v] = region.widths();
+    if !(width_u.greater(width_v) <= P::Scalar::from_f64(PROVABLE)) {
+        return Ok(Step::On);
+    }
+    // Ends: each turn counts a step against its budget; and the region halves until the number type holds no more.
+    loop {
+        let halves = region.widths().map(|width| width * P::Scalar::HALF);
+        let strays = surface.strays(halves);
+        let [u, v] = region.middle();
+        spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
+        let jet = bernstein::jet(surface.net.degrees(), whole, [u, v], basis).map_err(|Full| Limit::Scratch)?;
+        let local = Local::of(&jet);
+        let [along_u, along_v] = local.inverse_bounds(strays);
+        // A NaN or a singular Jacobian proves nothing.
+        if !(along_u + along_u < halves[0] && along_v + along_v < halves[1]) {
+            return Ok(Step::On);
+        }
+        let Some([du, dv]) = local.step() else {
+            return Ok(Step::On);
+        };
+        let next = [u + du, v + dv];
+        if strays <= limits.tolerance {
+            let held = region.nearest(next);
+            let on_it = local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance);
+            return Ok(Step::Done(on_it.then(|| Place { at: held, grazing: local.is_tangent() })));
+        }
+        let [slack_u, slack_v] = local.inverse_bounds(strays + limits.tolerance);
+        let near = [[next[0] - slack_u, next[0] + slack_u], [next[1] - slack_v, next[1] + slack_v]];
+        match region.meet(near) {
+            Some(smaller) => region = smaller,
+            None => return Ok(Step::Done(None)),
+        }
+    }
+}
+
+/// Of a region whose points all pass the ray within the tolerance, the one of its corners and middle that the ray meets
+/// first, in its interval if one is; `None` if the ray passes all of them by, as it may at a phantom hit.
+///
+/// Such a region is small but where the ray lies in the surface.
+#[cold]
+#[inline(never)]
+fn nearest<P: Point>(
+    surface: &Surface<'_, P>,
+    planes: &Planes<P::Scalar>,
+    whole: &[P::Flat],
+    part: &Part<'_, P::Flat>,
+    tolerance: P::Scalar,
+    basis: &mut BasisView<'_, P::Scalar>,
+) -> Result<Option<Place<P::Scalar>>, Limit> {
+    let [[u0, u1], [v0, v1]] = part.region.sides;
+    let allowed = tolerance * P::Scalar::from_u32(4) + part.error * P::Scalar::from_u32(16) + noise::<P::Scalar>();
+    // Whether it lies before the interval, its depth, and the place: in order of worth.
+    let mut best: Option<(bool, P::Scalar, Place<P::Scalar>)> = None;
+    for at in [part.region.middle(), [u0, v0], [u0, v1], [u1, v0], [u1, v1]] {
+        let jet = bernstein::jet(surface.net.degrees(), whole, at, basis).map_err(|Full| Limit::Scratch)?;
+        let local = Local::of(&jet);
+        if !(local.residual() <= allowed) {
+            continue;
+        }
+        let depth = planes.depth_on(&surface.net, at, basis).map_err(|Full| Limit::Scratch)?;
+        let early = planes.is_before_interval(depth);
+        if best.as_ref().is_none_or(|(before, least, _)| (early, depth) < (*before, *least)) {
+            best = Some((early, depth, Place { at, grazing: local.is_tangent() }));
+        }
+    }
+    Ok(best.map(|(_, _, place)| place))
+}

@@ -1,0 +1,78 @@
+//! The original subdivision method: Bézier clipping.
+//!
+//! Each surface that the ray may meet is projected and clipped, without patches and without a grid. All roots are found and
+//! count as intersection points, and the closest is the answer. A whole surface behind the closest hit so far is left out.
+//!
+//! Source: Nishita, Sederberg and Kakimoto (1990); the paper's section "Clipping Process of Bézier Clipping". See
+//! [`crate::clipper`].
+
+use super::{collect, keep_closest};
+use crate::clipper::{ClipRoom, Clipper};
+use crate::limits::{GaveUp, Limits, Work};
+use crate::point::Point;
+use crate::ray::{Hit, Interval, Ray};
+use crate::region::Order;
+use crate::scene::Scene;
+use heapless::vec::VecView;
+
+/// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`. `work` is set to what the call
+/// did.
+pub fn closest<P: Point>(
+    scene: &Scene<'_, P>,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    room: &mut ClipRoom<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    scene.closest(ray, interval, limits, work, |surface, planes, _, work| {
+        let mut best = None;
+        Clipper { surface, planes, limits, room }.roots(Order::Any, work, |root, _, work| {
+            keep_closest(&mut best, root, planes, &mut work.intersection_points);
+            Ok(true)
+        })?;
+        Ok(best)
+    })
+}
+
+/// All hits of `ray` in `interval`, into `hits` (whose old content is dropped), in order of t. A point on an edge that
+/// surfaces share is a hit of each.
+///
+/// More hits than the list holds are [`Limit::Hits`](crate::limits::Limit::Hits); it then holds the closest. Out of another
+/// budget, it holds those found by then. `work` is set to what the call did.
+pub fn all_hits<P: Point>(
+    scene: &Scene<'_, P>,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    room: &mut ClipRoom<'_, P>,
+    hits: &mut VecView<Hit<P::Scalar>>,
+    work: &mut Work,
+) -> Result<(), GaveUp<P::Scalar>> {
+    collect::all_hits(scene, ray, interval, limits, hits, work, |surface, planes, _, all, work| {
+        Clipper { surface, planes, limits, room }.roots(Order::Any, work, |root, _, work| {
+            all.add(root, surface, planes, limits.tolerance, &mut work.intersection_points);
+            Ok(true)
+        })
+    })
+}
+
+/// A hit of `ray` in `interval`, the first that is found, not the closest: for shadows, and whether there is one at all.
+/// `work` is set to what the call did.
+pub fn any_hit<P: Point>(
+    scene: &Scene<'_, P>,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    room: &mut ClipRoom<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    collect::any_hit(scene, ray, interval, limits, work, |surface, planes, _, work| {
+        let mut any = None;
+        Clipper { surface, planes, limits, room }.roots(Order::Any, work, |root, _, work| {
+            keep_closest(&mut any, root, planes, &mut work.intersection_points);
+            Ok(any.is_none())
+        })?;
+        Ok(any)
+    })
+}
