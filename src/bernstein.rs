@@ -121,6 +121,15 @@ impl Direction {
     }
 }
 
+impl core::fmt::Display for Direction {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Direction::U => "u",
+            Direction::V => "v",
+        })
+    }
+}
+
 /// The degrees of a net in u and v, and with them the shape of the slice that holds it: u is the outer index.
 ///
 /// Of 8 bits, so that degree + 1 is not 0 whatever it holds: rows of length 0 could not be cut.

@@ -51,6 +51,8 @@
 //! # Ok::<(), Box<dyn core::error::Error>>(())
 //! ```
 //!
+//! A B-spline surface is cut into Bézier surfaces first, likewise in lent memory: see [`bspline`].
+//!
 //! The modules stand in the order in which data flows; each knows only those above it.
 
 pub mod scalar;
@@ -64,6 +66,8 @@ pub mod arena;
 pub mod bernstein;
 pub mod point;
 pub mod surface;
+
+pub mod bspline;
 
 pub mod frame;
 

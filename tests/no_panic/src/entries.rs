@@ -5,6 +5,7 @@ use core::hint::black_box;
 use heapless::Vec;
 use patchray::arena::Arena;
 use patchray::bernstein::{Basis, Jet, MAX_DEGREE};
+use patchray::bspline::{BSpline, BSplineError, InKnots, Part, Piece, PieceError, PieceMemory, Pieces};
 use patchray::frame::{Aabb, Frame};
 use patchray::grid::{Grid, GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::limits::{Extent, GaveUp, Limit, Limits, Work};
@@ -190,6 +191,73 @@ extern "C" fn project<P: Point>(
     out: &mut Vec<P::Flat, POINTS>,
 ) -> bool {
     project_net(net, planes, out).is_ok()
+}
+
+/// Memory of B-splines' pieces.
+#[derive(Debug)]
+#[repr(C)]
+pub struct LentPieces<P: Point> {
+    points: Lent<P>,
+    pieces: Lent<Piece<P::Scalar>>,
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn spline<P: Point>(
+    degrees: &[usize; 2],
+    knots: &[Lent<P::Scalar>; 2],
+    points: &Lent<P>,
+    out: &mut Result<BSpline<'static, P>, BSplineError>,
+) {
+    let ([n, m], [u, v]) = (*degrees, knots);
+    // SAFETY: the caller keeps the contract of `slots`.
+    *out = unsafe { BSpline::new(n, m, u.slots(), v.slots(), points.slots()) };
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn pieces<P: Point>(
+    splines: &Lent<BSpline<'static, P>>,
+    memory: &LentPieces<P>,
+    out: &mut Result<Pieces<'static, P>, PieceError>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (splines, points, pieces) = unsafe { (splines.slots(), memory.points.slots(), memory.pieces.slots()) };
+    *out = Pieces::build(splines, PieceMemory { points, pieces });
+}
+
+/// What is asked of one B-spline, and of pieces.
+#[derive(Debug)]
+pub struct OfPieces<P: Point> {
+    numbers: [(usize, usize, usize, usize); 2],
+    domains: [[P::Scalar; 2]; 2],
+    counts: (usize, usize, usize, bool, u32),
+    net: Option<Net<'static, P>>,
+    nets: Option<[Net<'static, P>; 3]>,
+    part: Option<Part<P::Scalar>>,
+    at: (Option<InKnots<P::Scalar>>, [P::Scalar; 2]),
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn of_pieces<P: Point>(
+    spline: &BSpline<'static, P>,
+    memory: &LentPieces<P>,
+    number: usize,
+    hit: &Hit<P::Scalar>,
+    part: &Part<P::Scalar>,
+    out: &mut OfPieces<P>,
+) {
+    let both = [Direction::U, Direction::V];
+    out.numbers = both.map(|k| (spline.degree(k), spline.size(k), spline.spans(k), spline.knots(k).len()));
+    out.domains = both.map(|k| spline.domain(k));
+    // SAFETY: the caller keeps the contract of `slots`.
+    let pieces = unsafe { Pieces::new(memory.points.slots(), memory.pieces.slots()) };
+    let of_all = pieces.all().iter().fold(0, |sum: u32, piece| sum ^ piece.spline());
+    out.counts = (pieces.len(), spline.points().len(), pieces.nets().count(), pieces.is_empty(), of_all);
+    (out.net, out.nets) = (pieces.net(number), pieces.nets_array());
+    out.part = pieces.all().get(number).map(Piece::part);
+    out.at = (pieces.in_knots(hit), part.in_knots(hit.u, hit.v));
 }
 
 /// # Safety
@@ -562,5 +630,5 @@ macro_rules! export {
 
 export! {
     net evaluate cut project build look patches tree grids trace_newton trace_coherent newton_solve frame patch walk descend
-    verify arena worst_case
+    verify arena worst_case spline pieces of_pieces
 }

@@ -1,6 +1,7 @@
 //! The entry point that writes errors out: apart, because it alone links the formatting of `core`.
 
 use core::fmt::{Display, Write};
+use patchray::bspline::{BSplineError, PieceError};
 use patchray::grid::GridError;
 use patchray::limits::{GaveUp, Limit};
 use patchray::ray::RayError;
@@ -30,6 +31,8 @@ pub struct Errors {
     gave_up_double: GaveUp<f64>,
     ray: RayError,
     net: NetError,
+    spline: BSplineError,
+    pieces: PieceError,
     scene: SceneError,
     subdivide: SubdivideError,
     grid: GridError,
@@ -38,12 +41,14 @@ pub struct Errors {
 /// Writes all errors; the number of those that the sink took.
 #[unsafe(no_mangle)]
 pub extern "C" fn reach_display_f64_plain(errors: &Errors, sink: &mut Sink) -> u32 {
-    let all: [&dyn Display; 8] = [
+    let all: [&dyn Display; 10] = [
         &errors.limit,
         &errors.gave_up_single,
         &errors.gave_up_double,
         &errors.ray,
         &errors.net,
+        &errors.spline,
+        &errors.pieces,
         &errors.scene,
         &errors.subdivide,
         &errors.grid,
