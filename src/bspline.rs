@@ -30,12 +30,18 @@
 //! let needs = PieceNeeds { points: Need { needed: 12, given: 0 }, pieces: Need { needed: 2, given: 0 } };
 //! assert_eq!(asked.err(), Some(PieceError::Memory(needs)));
 //!
-//! // In firmware these are statics. Those for points may be used again once the scene has its own copy.
+//! // In firmware these are statics.
 //! let (mut points, mut pieces) = ([Plain([0.0; 3]); 12], [Piece::EMPTY; 2]);
 //! let pieces = Pieces::build(&spline, PieceMemory { points: &mut points, pieces: &mut pieces })?;
 //! let nets = pieces.nets_array::<2>().expect("as many as were asked for");
-//! # let (mut points, mut surfaces, mut offsets, mut references) = ([Plain([0.0; 3]); 12], [SurfaceSlot::EMPTY; 2], [0; 99], [0; 99]);
-//! # let memory = SceneMemory { points: &mut points, surfaces: &mut surfaces, offsets: &mut offsets, references: &mut references };
+//! # let (mut points, mut surfaces) = ([Plain([0.0; 3]); 12], [SurfaceSlot::EMPTY; 2]);
+//! # let (mut offsets, mut references) = ([0; 99], [0; 99]);
+//! # let memory = SceneMemory {
+//! #     points: &mut points,
+//! #     surfaces: &mut surfaces,
+//! #     offsets: &mut offsets,
+//! #     references: &mut references,
+//! # };
 //! let scene = Scene::build(&nets, &SceneOptions::default(), memory)?;
 //! // … and whatever a method needs: see the head of the crate. Then a hit of surface 1, the span from 4 to 5, at u = 1/2
 //! # let hit = Hit { t: 1.0, u: 0.5, v: 0.25, surface: 1, grazing: false };
@@ -427,7 +433,8 @@ impl<'m, P: Point> Pieces<'m, P> {
         Ok(Pieces { points: points.finish(), pieces: pieces.finish() })
     }
 
-    /// The view of memory that was filled before, such as a table in flash.
+    /// The view of memory that was filled before, such as a table in flash. Hits need the pieces alone: once a scene has its
+    /// copy of the points, they may be left out, and their memory used for something else.
     pub fn new(points: &'m [P], pieces: &'m [Piece<P::Scalar>]) -> Self {
         Pieces { points, pieces }
     }

@@ -227,7 +227,7 @@ fn humped() -> Model {
             points.push([i as f64 / 3.0, j as f64, heights[i], 1.0]);
         }
     }
-    single(ModelSurface { number: 0, degree_u: 3, degree_v: 1, rational: false, points })
+    single(ModelSurface { number: 0, degree_u: 3, degree_v: 1, rational: false, points, knots: None })
 }
 
 /// Damping mends starts that the plain iteration loses, and loses none that it finds.

@@ -46,7 +46,7 @@ fn flat_disc() -> Model {
     let w = 0.5_f64.sqrt();
     let points = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 0.0, w], [1.0, 1.0, w], [0.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
     let points = points.map(|[x, y, w]| [x, y, 0.7, w]).to_vec();
-    shapes::single(ModelSurface { number: 0, degree_u: 2, degree_v: 1, rational: true, points })
+    shapes::single(ModelSurface { number: 0, degree_u: 2, degree_v: 1, rational: true, points, knots: None })
 }
 
 /// A square in a plane across an axis, with its inner points moved within the plane.
@@ -54,7 +54,7 @@ fn flat_bicubic() -> Model {
     let mut random = Random(9);
     let mut moved = |k: usize| k as f64 / 3.0 + if k.is_multiple_of(3) { 0.0 } else { random.within(-0.1, 0.1) };
     let points = (0..16).map(|k| [moved(k / 4), moved(k % 4), 0.3, 1.0]).collect();
-    shapes::single(ModelSurface { number: 0, degree_u: 3, degree_v: 3, rational: false, points })
+    shapes::single(ModelSurface { number: 0, degree_u: 3, degree_v: 3, rational: false, points, knots: None })
 }
 
 impl Case {

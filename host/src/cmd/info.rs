@@ -1,11 +1,13 @@
 //! `patchray info`: what a file holds, and the memory that each method needs for it.
 //!
 //! With `--json` it prints an object with these fields: `schema` (1), `version` (the kernel's), `file`, `surfaces`,
-//! `rational_surfaces`, `control_points`, `degrees` (a list of `u`, `v`, `surfaces`), `control_box` (`min`, `max`; `null`
-//! without surfaces), `diagonal`, `flatness` and `grid_density` (the ones in effect), and `memory`: for each precision
-//! `patches` and `preparation_scratch_bytes` (while the scene is built), and under `methods` for each method `arena_bytes`
-//! (lent for the scene), `arena_bytes_by_kind`, `coherence_bytes_per_thread`, `scratch_bytes_per_thread`. A precision
-//! that cannot hold the model has `refused`, the reason, instead. All bytes are sizes of slots times their number.
+//! `rational_surfaces`, `control_points`, `degrees` (a list of `u`, `v`, `surfaces`), in all of which a B-spline counts with
+//! the Bézier surfaces that it was cut into; `b_splines`, a list of them with `file` and the fields of [`SplineSummary`];
+//! `control_box` (`min`, `max`; `null` without surfaces), `diagonal`, `flatness` and `grid_density` (the ones in effect),
+//! and `memory`: for each precision `patches` and `preparation_scratch_bytes` (while the scene is built), and under
+//! `methods` for each method `arena_bytes` (lent for the scene), `arena_bytes_by_kind`, `coherence_bytes_per_thread`,
+//! `scratch_bytes_per_thread`. A precision that cannot hold the model has `refused`, the reason, instead. All bytes are sizes
+//! of slots times their number.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -15,12 +17,13 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use super::load::{self, Loaded};
+use super::load::{self, Loaded, LoadedFile};
 use super::{Failure, check_outputs};
 use crate::lower::{LowerError, Stages};
 use crate::memory::Bytes;
 use crate::output::Output;
 use crate::prepared::Prepared;
+use crate::scene::spline::SplineSummary;
 use crate::scene::trace::{Method, Precision};
 use crate::settings::{Flags, Settings};
 use crate::stats::{SCHEMA, to_json};
@@ -28,12 +31,15 @@ use crate::stats::{SCHEMA, to_json};
 /// The command line of `info`.
 #[derive(Args, Clone, Debug)]
 pub struct InfoArgs {
-    /// A patch file (.bpt), or a scene file (.toml)
+    /// A file of surfaces (.bpt, or NURBS-Python's .json), or a scene file (.toml)
     pub file: PathBuf,
     /// The common flags.
     #[command(flatten)]
     pub flags: Flags,
 }
+
+/// How many B-splines the text lists, each on a line. More would push what follows off a screen.
+const LISTED: usize = 20;
 
 /// What `info` found out; the module's head lists the fields.
 #[derive(Clone, Debug, Serialize)]
@@ -45,6 +51,7 @@ pub struct Info {
     rational_surfaces: usize,
     control_points: usize,
     degrees: Vec<Degrees>,
+    b_splines: Vec<SplineOfFile>,
     control_box: Option<Corners>,
     diagonal: f64,
     flatness: f64,
@@ -57,6 +64,13 @@ struct Degrees {
     u: usize,
     v: usize,
     surfaces: usize,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct SplineOfFile {
+    file: String,
+    #[serde(flatten)]
+    spline: SplineSummary,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -121,6 +135,9 @@ impl Info {
             memory.insert(name, Memory::of(loaded, &Settings { precision, ..*settings })?);
         }
         let control_box = model.control_box();
+        let splines = loaded.files.iter().flat_map(|LoadedFile { name, splines, .. }| {
+            splines.iter().map(|spline| SplineOfFile { file: name.clone(), spline: spline.clone() })
+        });
         Ok(Info {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
@@ -129,6 +146,7 @@ impl Info {
             rational_surfaces: model.surfaces.iter().filter(|surface| surface.rational).count(),
             control_points: model.surfaces.iter().map(|surface| surface.points.len()).sum(),
             degrees: degrees.into_iter().map(|((u, v), surfaces)| Degrees { u, v, surfaces }).collect(),
+            b_splines: splines.collect(),
             control_box: control_box.map(|bounds| Corners { min: bounds.min, max: bounds.max }),
             diagonal: control_box.map_or(0.0, |bounds| bounds.diagonal()),
             flatness: settings.flatness,
@@ -150,6 +168,40 @@ impl Info {
         ));
         for Degrees { u, v, surfaces } in &self.degrees {
             line(format_args!("degrees {:<7} {surfaces}", format!("{u} x {v}")));
+        }
+        let (splines, pieces) =
+            (self.b_splines.len(), self.b_splines.iter().map(|one| one.spline.pieces).sum::<usize>());
+        if splines > 0 {
+            line(format_args!("b-splines       {splines}, cut into {pieces} of these surfaces"));
+        }
+        for SplineOfFile { file, spline } in self.b_splines.iter().take(LISTED) {
+            let SplineSummary {
+                surface,
+                rational,
+                degrees,
+                control_points,
+                knots,
+                spans,
+                pieces,
+                domain,
+                trims_ignored,
+            } = spline;
+            let by = |[u, v]: &[usize; 2]| format!("{u} x {v}");
+            let [[u0, u1], [v0, v1]] = domain;
+            let file = if self.file == *file { String::new() } else { format!(" of {file}") };
+            let kind = if *rational { "rational, " } else { "" };
+            let trims = if *trims_ignored > 0 { format!(", trims ignored {trims_ignored}") } else { String::new() };
+            line(format_args!(
+                "  surface {surface}{file}: {kind}degrees {}, points {}, knots {}, spans {}, pieces {pieces}, \
+                 u {u0} to {u1}, v {v0} to {v1}{trims}",
+                by(degrees),
+                by(control_points),
+                by(knots),
+                by(spans),
+            ));
+        }
+        if splines > LISTED {
+            line(format_args!("  and {} more, which --json lists", splines - LISTED));
         }
         if let Some(Corners { min, max }) = &self.control_box {
             line(format_args!("control box     {min:?} to {max:?}, diagonal {}", self.diagonal));

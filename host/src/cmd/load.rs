@@ -1,5 +1,6 @@
 //! Loading what a command works on: a scene or a patch file, without what cannot be traced.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
@@ -7,10 +8,11 @@ use std::time::Instant;
 use super::{Failure, say};
 use crate::lower::{LowerError, Stages};
 use crate::prepared::{Prepared, unfit_for};
-use crate::scene::bpt;
 use crate::scene::error::{OnInvalid, Skipped};
 use crate::scene::file::{self, Description, Scene};
 use crate::scene::model::Model;
+use crate::scene::patches;
+use crate::scene::spline::SplineSummary;
 use crate::scene::trace::Precision;
 use crate::settings::{Flags, Settings};
 
@@ -18,12 +20,22 @@ use crate::settings::{Flags, Settings};
 pub struct Loaded {
     /// The surfaces.
     pub model: Model,
-    /// Which of them come from which file, by index.
-    pub files: Vec<(String, Range<usize>)>,
+    /// Which of them come from which file.
+    pub files: Vec<LoadedFile>,
     /// What the scene file says, if there is one.
     pub description: Option<Description>,
     /// How to trace.
     pub settings: Settings,
+}
+
+/// A file of surfaces.
+pub struct LoadedFile {
+    /// Its name, as given.
+    pub name: String,
+    /// The surfaces that come from it, by their index in the model.
+    pub surfaces: Range<usize>,
+    /// The B-splines whose pieces are among them.
+    pub splines: Vec<SplineSummary>,
 }
 
 /// Loads a scene file and the patch files that it names.
@@ -37,7 +49,12 @@ pub fn scene(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
     for file in &files {
         name_skipped(&file.skipped);
     }
-    let files = files.into_iter().map(|file| (file.path.display().to_string(), file.surfaces)).collect();
+    let files = files.into_iter().map(|file| LoadedFile {
+        name: file.path.display().to_string(),
+        surfaces: file.surfaces,
+        splines: file.splines,
+    });
+    let files = files.inspect(LoadedFile::name_trims).collect();
     Loaded { model, files, description: Some(description), settings }.fit(flags.on_invalid())
 }
 
@@ -46,9 +63,11 @@ pub fn scene(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
 /// # Errors
 /// The file is refused.
 pub fn patches(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
-    let file = bpt::read(path, flags.on_invalid())?;
+    let file = patches::read(path, flags.on_invalid())?;
     name_skipped(&file.skipped);
-    let files = vec![(path.display().to_string(), 0..file.model.surfaces.len())];
+    let name = path.display().to_string();
+    let files = vec![LoadedFile { name, surfaces: 0..file.model.surfaces.len(), splines: file.splines }];
+    files.iter().for_each(LoadedFile::name_trims);
     let settings = Settings::of_flags(flags);
     Loaded { model: file.model, files, description: None, settings }.fit(flags.on_invalid())
 }
@@ -59,46 +78,78 @@ fn name_skipped(skipped: &[Skipped]) {
     }
 }
 
+impl LoadedFile {
+    /// Says which surfaces are larger than their file means them to be.
+    fn name_trims(&self) {
+        for spline in self.splines.iter().filter(|spline| spline.trims_ignored > 0) {
+            let SplineSummary { surface, trims_ignored, .. } = spline;
+            say(format_args!(
+                "surface {surface} is taken whole ({}): trimming curves ignored: {trims_ignored}",
+                self.name
+            ));
+        }
+    }
+}
+
 impl Loaded {
-    /// Refuses surfaces that the precision cannot hold, or leaves them out.
+    /// Refuses surfaces that the precision cannot hold, or leaves them out; a B-spline with all its pieces.
     fn fit(mut self, on_invalid: OnInvalid) -> Result<Self, Failure> {
         let unfit = unfit_for(&self.model, self.settings.precision);
         let precision = match self.settings.precision {
             Precision::F32 => "f32",
             Precision::F64 => "f64",
         };
+        let mut left_out = BTreeSet::new();
         for (index, reason) in &unfit {
-            let file = self.file_of(*index).to_owned();
-            let number = self.number_of(*index);
+            let Some(file) = self.file_of(*index) else {
+                continue;
+            };
+            let (name, number) = (file.name.clone(), self.number_of(*index));
             if on_invalid == OnInvalid::Skip {
-                say(format_args!("surface {number} left out ({file}): in {precision}, {reason}"));
+                if left_out.contains(index) {
+                    continue;
+                }
+                say(format_args!("surface {number} left out ({name}): in {precision}, {reason}"));
+                // The pieces of one surface follow one another.
+                let range = file.surfaces.clone();
+                let of_it = |piece: &usize| range.contains(piece) && self.number_of(*piece) == number;
+                left_out.extend((range.start..=*index).rev().take_while(of_it));
+                left_out.extend((*index..range.end).take_while(of_it));
                 continue;
             }
             return Err(Failure::Refused {
-                file,
+                file: name,
                 reason: format!("in {precision}, surface {number} is not valid: {reason}"),
                 help: "use --precision f64 or other units, or --skip-invalid to leave such surfaces out".to_owned(),
             });
         }
         // From the last, so that the indices of those before stay.
-        for (index, _) in unfit.iter().rev() {
-            self.model.surfaces.remove(*index);
-            for (_, range) in &mut self.files {
-                range.start -= usize::from(range.start > *index);
-                range.end -= usize::from(range.end > *index);
+        for &index in left_out.iter().rev() {
+            let removed = self.model.surfaces.remove(index);
+            for file in &mut self.files {
+                if removed.knots.is_some() && file.surfaces.contains(&index) {
+                    file.splines.retain(|spline| spline.surface != removed.number);
+                }
+                file.surfaces.start -= usize::from(file.surfaces.start > index);
+                file.surfaces.end -= usize::from(file.surfaces.end > index);
             }
         }
         Ok(self)
     }
 
     /// The file that holds the surface with this index in the model.
-    pub fn file_of(&self, index: usize) -> &str {
-        self.files.iter().find(|(_, range)| range.contains(&index)).map_or("", |(file, _)| file)
+    pub fn file_of(&self, index: usize) -> Option<&LoadedFile> {
+        self.files.iter().find(|file| file.surfaces.contains(&index))
     }
 
     /// The number in its file of the surface with this index in the model.
     pub fn number_of(&self, index: usize) -> usize {
         self.model.surfaces.get(index).map_or(index, |surface| surface.number)
+    }
+
+    /// The parameters, as its file has them, of a point of the surface with this index in the model.
+    pub fn parameters_of(&self, index: usize, u: f64, v: f64) -> [f64; 2] {
+        self.model.surfaces.get(index).map_or([u, v], |surface| surface.parameters(u, v))
     }
 
     /// Lowers the surfaces for the method of the settings, and says how many seconds that took.

@@ -20,7 +20,7 @@ use crate::stats::Stats;
 /// The command line of `query`.
 #[derive(Args, Clone, Debug)]
 pub struct QueryArgs {
-    /// The patch file (.bpt)
+    /// The surfaces (.bpt, or NURBS-Python's .json)
     pub patches: PathBuf,
     /// The ray file (CSV)
     pub rays: PathBuf,
@@ -99,12 +99,15 @@ pub fn run(args: &QueryArgs) -> Result<(), Failure> {
 
 /// The line of a ray, its numbers brought back by `narrow` to the precision in which they were computed.
 fn answer<S: Number>(outcome: &Outcome, loaded: &Loaded, narrow: impl Fn(f64) -> S) -> Answer<'static, S> {
-    let line = |found: &Found| answers::Found {
-        t: narrow(found.t),
-        u: narrow(found.u),
-        v: narrow(found.v),
-        patch: loaded.number_of(found.surface),
-        normal: found.normal.map(|normal| normal.map(&narrow)),
+    let line = |found: &Found| {
+        let [u, v] = loaded.parameters_of(found.surface, found.u, found.v);
+        answers::Found {
+            t: narrow(found.t),
+            u: narrow(u),
+            v: narrow(v),
+            patch: loaded.number_of(found.surface),
+            normal: found.normal.map(|normal| normal.map(&narrow)),
+        }
     };
     match outcome {
         Outcome::Hit(found) if found.grazing => Answer::Graze(line(found)),

@@ -17,10 +17,10 @@
 //! # Ok::<(), patchray_host::scene::error::InputError>(())
 //! ```
 use std::ops::Range;
-use std::path::Path;
 
 use super::error::{InputError, OnInvalid, Skipped};
-use super::model::{Model, ModelSurface};
+use super::model::ModelSurface;
+use super::patches::PatchFile;
 use super::source::{Counted, SourceText};
 pub use writer::write;
 
@@ -29,29 +29,20 @@ mod writer;
 /// The highest degree of a surface in either direction; the kernel's working nets are made for it.
 pub const MAX_DEGREE: usize = 15;
 
-/// What was read from a patch file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct PatchFile {
-    /// The surfaces, each with its number in the file.
-    pub model: Model,
-    /// The surfaces that were left out; empty unless the reader was told to skip.
-    pub skipped: Vec<Skipped>,
-}
-
-/// Reads the patch file at `path`.
+/// Reads the text of a patch file.
 ///
 /// # Errors
-/// The file cannot be read, is not in the format, or holds an invalid surface that is not to be skipped.
-pub fn read(path: &Path, on_invalid: OnInvalid) -> Result<PatchFile, InputError> {
-    Reader::new(&SourceText::read(path)?, on_invalid).file()
+/// It is not in the format, or holds an invalid surface that is not to be skipped.
+pub fn read(source: &SourceText, on_invalid: OnInvalid) -> Result<PatchFile, InputError> {
+    Reader::new(source, on_invalid).file()
 }
 
 /// Reads `text`, a whole patch file; `name` stands for its path in errors.
 ///
 /// # Errors
-/// As [`read`], the text being there.
+/// As [`read`].
 pub fn parse(name: &str, text: &str, on_invalid: OnInvalid) -> Result<PatchFile, InputError> {
-    Reader::new(&SourceText::new(name, text), on_invalid).file()
+    read(&SourceText::new(name, text), on_invalid)
 }
 
 /// A run of characters without a space, and the byte at which it starts.
@@ -237,6 +228,7 @@ impl<'a> Reader<'a> {
                 degree_v: degree_v as usize,
                 rational: arity == Some(4),
                 points,
+                knots: None,
             }),
         }
     }

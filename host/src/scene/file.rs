@@ -1,7 +1,7 @@
 //! Scene files: TOML that names surfaces and says how to look at them.
 //!
 //! Only `surfaces` and `[camera]` are needed; the fields and their defaults are those of [`Description`] and its parts.
-//! Files of surfaces are taken from the folder of the scene file.
+//! Files of surfaces, in any format of [`patches`], are taken from the folder of the scene file.
 //!
 //! ```
 //! use patchray_host::scene::file;
@@ -54,13 +54,14 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::appearance::{BACKGROUND, Image, ImageTable, Light, LightTable, Material, MaterialTable};
-use super::bpt;
 use super::camera::{Camera, CameraTable};
 use super::check::Check;
 use super::error::{InputError, OnInvalid, Skipped};
 use super::model::Model;
 use super::nearest::did_you_mean;
+use super::patches::{self, PatchFile};
 use super::source::SourceText;
+use super::spline::SplineSummary;
 use super::trace::{TraceSettings, TraceTable};
 
 /// What a scene file says.
@@ -111,6 +112,8 @@ pub struct SceneFile {
     pub path: PathBuf,
     /// Which surfaces of the scene's model come from it, by index there.
     pub surfaces: Range<usize>,
+    /// The B-splines whose pieces are among them.
+    pub splines: Vec<SplineSummary>,
     /// Its surfaces that were left out; empty unless the reader was told to skip.
     pub skipped: Vec<Skipped>,
 }
@@ -131,14 +134,14 @@ pub fn read(path: &Path, on_invalid: OnInvalid) -> Result<Scene, InputError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     load(source, |file| {
         let path = folder.join(file);
-        bpt::read(&path, on_invalid).map(|file| (path, file))
+        patches::read(&path, on_invalid).map(|file| (path, file))
     })
 }
 
 /// The scene that `source` describes, with patch files fetched by `fetch`, which gives their path too.
 pub(super) fn load(
     source: SourceText,
-    mut fetch: impl FnMut(&Path) -> Result<(PathBuf, bpt::PatchFile), InputError>,
+    mut fetch: impl FnMut(&Path) -> Result<(PathBuf, PatchFile), InputError>,
 ) -> Result<Scene, InputError> {
     let description = describe(&source)?;
     let (mut model, mut files) = (Model::default(), Vec::new());
@@ -154,7 +157,8 @@ pub(super) fn load(
         })?;
         let first = model.surfaces.len();
         model.surfaces.append(&mut file.model.surfaces);
-        files.push(SceneFile { path, surfaces: first..model.surfaces.len(), skipped: file.skipped });
+        let surfaces = first..model.surfaces.len();
+        files.push(SceneFile { path, surfaces, splines: file.splines, skipped: file.skipped });
     }
     Ok(Scene { source, description, model, files })
 }

@@ -1,4 +1,5 @@
 //! What a patch file holds: surfaces by control points, as written.
+use patchray::bspline::Part;
 
 /// A Bézier surface as its file states it, in the file's units.
 ///
@@ -17,6 +18,19 @@ pub struct ModelSurface {
     pub rational: bool,
     /// The control points.
     pub points: Vec<[f64; 4]>,
+    /// Of a piece of a B-spline, the knots between which it lies. `None` for a surface that its file states as Bézier, whose
+    /// parameters are 0 to 1.
+    pub knots: Option<Part<f64>>,
+}
+
+impl ModelSurface {
+    /// The parameters, as the file's surface has them, of the point at (u, v), each from 0 to 1.
+    pub fn parameters(&self, u: f64, v: f64) -> [f64; 2] {
+        match self.knots {
+            Some(part) => part.in_knots(u, v),
+            None => [u, v],
+        }
+    }
 }
 
 /// The surfaces of one file, in its order.

@@ -35,6 +35,7 @@ fn polynomial(degree_u: usize, degree_v: usize, points: Vec<[f64; 3]>) -> ModelS
         degree_v,
         rational: false,
         points: points.into_iter().map(|[x, y, z]| [x, y, z, 1.0]).collect(),
+        knots: None,
     }
 }
 
@@ -116,7 +117,7 @@ fn revolve(centre: [f64; 3], profile: &[[f64; 3]], around: usize) -> Vec<ModelSu
                 points.push([centre[0] + radius * x, centre[1] + radius * y, centre[2] + height, weight * w]);
             }
         }
-        ModelSurface { number: 0, degree_u: profile.len() - 1, degree_v: 2, rational: true, points }
+        ModelSurface { number: 0, degree_u: profile.len() - 1, degree_v: 2, rational: true, points, knots: None }
     };
     (0..around).map(surface).collect()
 }
@@ -184,6 +185,7 @@ pub fn elevate(surface: &ModelSurface, m: usize, n: usize) -> ModelSurface {
         degree_v: n,
         rational: surface.rational,
         points: raised.into_iter().flatten().map(|[x, y, z, w]| [x / w, y / w, z / w, w]).collect(),
+        knots: surface.knots,
     }
 }
 

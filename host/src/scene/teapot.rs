@@ -1,10 +1,11 @@
 //! The common teapot: Newell's, with bottom, built in so that it can be drawn without any file.
 use std::path::PathBuf;
 
-use super::bpt::{self, PatchFile};
+use super::bpt;
 use super::error::{InputError, OnInvalid};
 use super::file::{self, Scene};
 use super::model::Model;
+use super::patches::PatchFile;
 use super::source::SourceText;
 
 /// The patch file `fixtures/patches/teapot.bpt`.

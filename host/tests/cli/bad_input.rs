@@ -83,6 +83,62 @@ fn bad_patch_files_end_with_3() {
     }
 }
 
+/// A B-spline that begins as a file of NURBS-Python does; a part of it is replaced.
+fn bad_spline(from: &str, to: &str) -> String {
+    let whole = "{\"shape\": {\"type\": \"surface\", \"count\": 1, \"data\": [\n\
+        {\"degree_u\": 1, \"degree_v\": 2, \"size_u\": 3, \"size_v\": 4,\n\
+        \"knotvector_u\": [0, 0, 1, 2, 2],\n\
+        \"knotvector_v\": [0, 0, 0, 1, 3, 3, 3],\n\
+        \"control_points\": {\"points\": [[0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 3, 0], [1, 0, 0], [1, 1, 1],\n\
+        [1, 2, 1], [1, 3, 0], [2, 0, 0], [2, 1, 0], [2, 2, 0], [2, 3, 0]],\n\
+        \"weights\": [1, 1, 1, 1, 1, 2, 2, 1, 1, 1, 1, 1]}}]}}\n";
+    assert_eq!(whole.matches(from).count(), 1, "{from}");
+    whole.replace(from, to)
+}
+
+#[test]
+fn bad_b_splines_end_with_3() {
+    let folder = Folder::new();
+    folder.put("bad.json", bad_spline("\"degree_u\": 1", "\"degree_u\": 1"));
+    folder.done("query bad.json rays.csv -o a.csv");
+    std::fs::remove_file(folder.path("a.csv")).expect("it was written");
+    folder.put("scene.toml", SCENE.replace("teapot.bpt", "bad.json"));
+    let whole = bad_spline("\"degree_u\": 1", "\"degree_u\": 1");
+    for (text, parts) in [
+        (String::new(), &["bad.json:1:1", "empty"][..]),
+        ("{}".to_owned(), &["bad.json:1:1", "no `shape`"]),
+        (whole[..whole.len() - 20].to_owned(), &["bad.json:7:", "cut off"]),
+        (whole[..whole.len() / 2].to_owned(), &["bad.json:5:", "cut off"]),
+        (bad_spline("\"surface\"", "\"curve\""), &["bad.json:1:20", "`curve`"]),
+        (bad_spline("\"count\": 1", "\"count\": 3"), &["bad.json:1:40", "1 of the 3 surfaces"]),
+        (bad_spline("[1, 1, 1]", "[1, one, 1]"), &["bad.json:5:", "not JSON"]),
+        (bad_spline("[1, 1, 1]", "[1, \"one\", 1]"), &["bad.json:5:90", "y of point 5", "not a number"]),
+        (bad_spline("[1, 1, 1]", "[1, NaN, 1]"), &["bad.json:5:90", "NaN"]),
+        (bad_spline("[1, 1, 1]", "[1, 1, -Infinity]"), &["bad.json:5:93", "infinite"]),
+        (bad_spline("[1, 1, 1]", "[1, 1]"), &["bad.json:5:86", "point 5", "2 numbers"]),
+        (bad_spline(", [2, 3, 0]]", "]"), &["bad.json:5:30", "11 control points", "3 x 4"]),
+        (bad_spline("\"size_u\": 3", "\"size_u\": 4"), &["bad.json:5:30", "4 x 4"]),
+        (bad_spline("\"size_v\": 4", "\"size_v\": 2"), &["bad.json:2:55", "too few"]),
+        (bad_spline("\"degree_u\": 1", "\"degree_u\": 0"), &["bad.json:2:14", "degree 0"]),
+        (bad_spline("\"degree_v\": 2", "\"degree_v\": 16"), &["bad.json:2:29", "degree 16"]),
+        (bad_spline("1, 2, 2]", "1, 2]"), &["bad.json:3:17", "4 knots in u, not 5"]),
+        (bad_spline("[0, 0, 0, 1, 3", "[0, 0, 0, 4, 3"), &["bad.json:4:30", "knot 4", "less than the 4"]),
+        (bad_spline("[0, 0, 0, 1, 3", "[0, 0, 0, 0, 3"), &["bad.json:4:27", "knot 3", "equal to the 3"]),
+        (bad_spline("[0, 0, 1, 2, 2]", "[0, 1, 1, 1, 2]"), &["bad.json:3:27", "empty in u"]),
+        (bad_spline("[0, 0, 1, 2, 2]", "[0, 0, Infinity, 2, 2]"), &["bad.json:3:24", "knot 2", "infinite"]),
+        (bad_spline("1, 2, 2, 1, 1", "1, 0, 2, 1, 1"), &["bad.json:7:28", "weight of point 5", "not above 0"]),
+        (bad_spline("1, 2, 2, 1, 1", "1, 2, 2, 1"), &["bad.json:7:12", "11 weights"]),
+        (bad_spline("[2, 3, 0]", "[2, 3e39, 0]"), &["bad.json", "surface 0", "f32"]),
+    ] {
+        folder.put("bad.json", &text);
+        folder.fails("query bad.json rays.csv -o a.csv --stats s.json --precision f32", 3, parts);
+        folder.fails("render scene.toml -o a.png --precision f32", 3, parts);
+        if !text.contains("3e39") {
+            folder.fails("info bad.json -o a.json --json", 3, parts);
+        }
+    }
+}
+
 #[test]
 fn bad_ray_files_end_with_3() {
     let folder = Folder::new();

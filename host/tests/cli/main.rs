@@ -9,6 +9,7 @@ use patchray_host::scene::{bpt, shapes, teapot};
 use serde_json::Value;
 use tempfile::TempDir;
 
+mod b_splines;
 mod bad_input;
 
 /// A folder with a teapot, a scene of it, and some rays.

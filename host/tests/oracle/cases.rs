@@ -54,7 +54,7 @@ fn graph(roots: &[f64], n: usize) -> ModelSurface {
             points.push([i as f64 / m as f64, j as f64 / n as f64, c[i], 1.0]);
         }
     }
-    ModelSurface { number: 0, degree_u: m, degree_v: n, rational: false, points }
+    ModelSurface { number: 0, degree_u: m, degree_v: n, rational: false, points, knots: None }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::super::error::tests::assert_refused;
+use super::super::model::Model;
 use super::*;
 
 const SQUARE: &str = "1 1\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n";
@@ -156,6 +157,7 @@ fn surface() -> impl Strategy<Value = ModelSurface> {
             degree_v,
             rational,
             points,
+            knots: None,
         })
     })
 }
