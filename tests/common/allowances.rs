@@ -16,6 +16,10 @@ pub const RATIONAL_EVALUATION: u32 = 32;
 /// with two roundings each, before the evaluation.
 pub const RESTRICTION: u32 = 24;
 
+/// A B-spline's piece against the B-spline, both summed in `f64`, for each degree of u and of v: one less than the degree
+/// twice, of means with four roundings each, not all of one sign.
+pub const PIECE_PER_DEGREE: u32 = 2;
+
 /// Samples of a patch against its box: what the padding is there to cover must not need all of it.
 pub const ENCLOSURE: u32 = 0;
 
