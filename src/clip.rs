@@ -37,7 +37,7 @@ pub struct Noise<S> {
 /// The lines are Nishita, Sederberg and Kakimoto's: L_u, for clipping u, along the net's mean chord in v, and L_v along that in
 /// u, so that distances to L_u change with u and hardly with v.
 #[inline(always)]
-pub(crate) fn normal<F: Flat>(corners: [F; 4], direction: Direction) -> [F::Scalar; 2] {
+fn normal<F: Flat>(corners: [F; 4], direction: Direction) -> [F::Scalar; 2] {
     let [p00, p10, p01, p11] = corners.map(position);
     let chord = |a: [F::Scalar; 2], b: [F::Scalar; 2], c: [F::Scalar; 2], d: [F::Scalar; 2]| {
         [b[0] - a[0] + (d[0] - c[0]), b[1] - a[1] + (d[1] - c[1])]
@@ -117,17 +117,16 @@ pub(crate) fn clip<F: Flat>(
     degrees: Degrees,
     net: &[F],
     direction: Direction,
-    normal: [F::Scalar; 2],
     noise: &Noise<F::Scalar>,
 ) -> Clip<F::Scalar> {
     // As in evaluation, the shapes of nearly all models are unrolled.
     if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[F; 16]>::try_from(net)) {
-        return hull_at_zero(&extents::<F, 4, 16>(net, direction, normal), normal, noise);
+        return clip_unrolled::<F, 4, 16>(net, direction, noise);
     }
     if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&[F; 9]>::try_from(net)) {
-        return hull_at_zero(&extents::<F, 3, 9>(net, direction, normal), normal, noise);
+        return clip_unrolled::<F, 3, 9>(net, direction, noise);
     }
-    clip_any_degree(degrees, net, direction, normal, noise)
+    clip_any_degree(degrees, net, direction, noise)
 }
 
 #[inline(never)]
@@ -135,18 +134,14 @@ fn clip_any_degree<F: Flat>(
     degrees: Degrees,
     net: &[F],
     direction: Direction,
-    normal: [F::Scalar; 2],
     noise: &Noise<F::Scalar>,
 ) -> Clip<F::Scalar> {
-    let mut all = [[F::Scalar::INFINITY, F::Scalar::LEAST]; MAX_DEGREE + 1];
-    let order = match direction {
-        Direction::U => degrees.rows(),
-        Direction::V => degrees.columns(),
-    };
-    let Some(extents) = all.get_mut(..order) else {
-        return Clip::Settled;
-    };
-    for (i, row) in net.chunks_exact(degrees.columns()).enumerate() {
+    let (rows, columns) = (degrees.rows(), degrees.columns());
+    let corner = |k: usize| net.get(k).copied().unwrap_or(F::ZERO);
+    let last = (rows - 1) * columns;
+    let normal = normal([corner(0), corner(last), corner(columns - 1), corner(last + columns - 1)], direction);
+    let mut extents = [[F::Scalar::INFINITY, F::Scalar::LEAST]; MAX_DEGREE + 1];
+    for (i, row) in net.chunks_exact(columns).enumerate() {
         for (j, &point) in row.iter().enumerate() {
             let along = match direction {
                 Direction::U => i,
@@ -158,29 +153,36 @@ fn clip_any_degree<F: Flat>(
             }
         }
     }
-    hull_at_zero(extents, normal, noise)
+    let order = match direction {
+        Direction::U => rows,
+        Direction::V => columns,
+    };
+    hull_at_zero(&extents, order, normal, noise)
 }
 
-/// For each index in one direction the least and the largest distance of the net's points; `N` is `ORDER²`.
+/// [`clip`] for an order known when compiling; `N` is `ORDER²`.
 #[inline(always)]
-fn extents<F: Flat, const ORDER: usize, const N: usize>(
+fn clip_unrolled<F: Flat, const ORDER: usize, const N: usize>(
     net: &[F; N],
     direction: Direction,
-    normal: [F::Scalar; 2],
-) -> [[F::Scalar; 2]; ORDER] {
-    const { assert!(ORDER * ORDER == N) }
+    noise: &Noise<F::Scalar>,
+) -> Clip<F::Scalar> {
+    const { assert!(ORDER * ORDER == N && ORDER > 1) }
+    let normal = normal([net[0], net[N - ORDER], net[ORDER - 1], net[N - 1]], direction);
     let mut distances = [F::Scalar::ZERO; N];
     for k in 0..N {
         distances[k] = distance(net[k], normal);
     }
-    match direction {
-        Direction::U => extents_of::<F::Scalar, ORDER, N>(&distances, |k, i| k * ORDER + i),
-        Direction::V => extents_of::<F::Scalar, ORDER, N>(&distances, |k, i| i * ORDER + k),
-    }
+    let extents = match direction {
+        Direction::U => extents::<F::Scalar, ORDER, N>(&distances, |k, i| k * ORDER + i),
+        Direction::V => extents::<F::Scalar, ORDER, N>(&distances, |k, i| i * ORDER + k),
+    };
+    hull_at_zero(&extents, ORDER, normal, noise)
 }
 
+/// For each index in one direction the least and the largest distance.
 #[inline(always)]
-fn extents_of<S: Scalar, const ORDER: usize, const N: usize>(
+fn extents<S: Scalar, const ORDER: usize, const N: usize>(
     distances: &[S; N],
     at: impl Fn(usize, usize) -> usize,
 ) -> [[S; 2]; ORDER] {
@@ -203,63 +205,76 @@ fn distance<F: Flat>(point: F, normal: [F::Scalar; 2]) -> F::Scalar {
     f * normal[0] + g * normal[1]
 }
 
-/// Where the convex hull of the points (k / degree, `extents[k]`) meets zero.
+/// Where the convex hull of the points (k / (order − 1), `extents[k]`) meets zero; `order` is at most `N`.
 #[inline(always)]
-fn hull_at_zero<S: Scalar>(extents: &[[S; 2]], normal: [S; 2], noise: &Noise<S>) -> Clip<S> {
+fn hull_at_zero<S: Scalar, const N: usize>(
+    extents: &[[S; 2]; N],
+    order: usize,
+    normal: [S; 2],
+    noise: &Noise<S>,
+) -> Clip<S> {
     let [a, b] = normal.map(S::abs);
     let error = noise.error * (a + b);
-    let all = extents.iter().fold([S::INFINITY, S::LEAST], |all, e| [all[0].lesser(e[0]), all[1].greater(e[1])]);
+    let order = order.min(N);
+    let [mut least, mut largest] = extents[0];
+    for k in 1..order {
+        let [low, high] = extents[k];
+        (least, largest) = (least.lesser(low), largest.greater(high));
+    }
     // Nothing only if it is separated from zero by more than rounding. A NaN clips nothing.
-    if all[0] > error || all[1] < -error {
+    if least > error || largest < -error {
         return Clip::Nothing;
     }
-    if all[1] - all[0] <= noise.tolerance * a.greater(b) + error * S::from_u32(4) {
+    if largest - least <= noise.tolerance * a.greater(b) + error * S::from_u32(4) {
         return Clip::Settled;
     }
-    let last = extents.len().saturating_sub(1);
+    // From an end that is clear of zero the hull's side toward zero counts; an end that holds zero is not clipped.
+    let last = order - 1;
     let degree = S::from_u32(last as u32);
-    let from = crossing(extents.iter(), error) / degree;
-    let to = crossing(extents.iter().rev(), error) / degree;
     // A few roundings went into each.
     let slack = S::EPSILON * S::from_u32(4);
-    let (from, to) = (from - slack, S::ONE - (to - slack));
-    let (from, to) = (S::ZERO.greater(from), S::ONE.lesser(to));
+    let mut part = [S::ZERO, S::ONE];
+    let [low, high] = extents[0];
+    if low > error {
+        part[0] = crossing::<S, N>(order, |k| extents[k][0] - error) / degree - slack;
+    } else if high < -error {
+        part[0] = crossing::<S, N>(order, |k| -extents[k][1] - error) / degree - slack;
+    }
+    let [low, high] = extents[last];
+    if low > error {
+        part[1] = S::ONE - (crossing::<S, N>(order, |k| extents[last - k][0] - error) / degree - slack);
+    } else if high < -error {
+        part[1] = S::ONE - (crossing::<S, N>(order, |k| -extents[last - k][1] - error) / degree - slack);
+    }
+    let [from, to] = [S::ZERO.greater(part[0]), S::ONE.lesser(part[1])];
     if from < to { Clip::Part([from, to]) } else { Clip::Part([S::ZERO, S::ONE]) }
 }
 
-/// The first abscissa, counted from 0 by control points, where the hull of widened extents meets zero; 0 if the first one
-/// does.
+/// The first abscissa, counted by control points, where the hull of heights, the first of them above zero, comes down to
+/// zero.
 #[inline(always)]
-fn crossing<'e, S: Scalar>(extents: impl Iterator<Item = &'e [S; 2]> + Clone, error: S) -> S {
-    let Some(&[low, high]) = extents.clone().next() else {
-        return S::ZERO;
-    };
-    let (low, high) = (low - error, high + error);
-    if !(low > S::ZERO || high < S::ZERO) {
-        return S::ZERO;
+fn crossing<S: Scalar, const N: usize>(order: usize, height: impl Fn(usize) -> S) -> S {
+    let mut heights = [S::ZERO; N];
+    for k in 0..order {
+        heights[k] = height(k);
     }
-    let above = low > S::ZERO;
-    let heights = extents.map(|&[low, high]| if above { low - error } else { -high - error });
     // Each pair of a point above and a later one not above is a chord of the hull; the first crossing of any is the hull's.
     // As a fraction, whose parts are positive, so that comparing needs no division.
     let [mut numerator, mut denominator] = [S::ONE, S::ZERO];
-    let mut i = S::ZERO;
-    let mut rest = heights;
-    while let Some(a) = rest.next() {
+    for i in 0..order {
+        let a = heights[i];
         if !(a > S::ZERO) {
             break;
         }
-        let mut k = i;
-        for b in rest.clone() {
-            k += S::ONE;
+        for k in i + 1..order {
+            let b = heights[k];
             if b <= S::ZERO {
-                let (crossed, height) = (k * a - i * b, a - b);
-                if crossed * denominator < numerator * height {
-                    (numerator, denominator) = (crossed, height);
+                let (crossed, drop) = (S::from_u32(k as u32) * a - S::from_u32(i as u32) * b, a - b);
+                if crossed * denominator < numerator * drop {
+                    (numerator, denominator) = (crossed, drop);
                 }
             }
         }
-        i += S::ONE;
     }
     if denominator > S::ZERO { numerator / denominator } else { S::ZERO }
 }

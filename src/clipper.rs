@@ -10,7 +10,7 @@
 //! Slusallek and Seidel (1997) found, where a region shrinks to a point that the ray passes by.
 
 use crate::bernstein::{self, BasisView, Degrees, Direction, Full, Linear};
-use crate::clip::{Clip, Noise, clip, normal};
+use crate::clip::{Clip, Noise, clip};
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::newton::{Local, Place, Root, noise};
 use crate::planes::{Planes, project_net};
@@ -54,7 +54,9 @@ struct Part<'a, F: Flat> {
     region: Region<F::Scalar>,
     degrees: Degrees,
     net: &'a mut [F],
-    /// By how much the net's coefficients may be off.
+    /// A bound of the coefficients' |f| and |g|.
+    reach: F::Scalar,
+    /// By how much the coefficients may be off.
     error: F::Scalar,
 }
 
@@ -68,7 +70,7 @@ impl<F: Flat> Part<'_, F> {
             from = old;
         } else {
             self.net.iter_mut().zip(whole).for_each(|(slot, &point)| *slot = point);
-            self.error = projection_error();
+            (self.reach, self.error) = (reach(whole), projection_error());
         }
         for (direction, (outer, inner)) in
             [Direction::U, Direction::V].into_iter().zip(from.into_iter().zip(region.sides))
@@ -96,14 +98,12 @@ impl<F: Flat> Part<'_, F> {
         };
         // Each of up to 2 · degree levels of de Casteljau's algorithm rounds a sum of two products.
         let roundings = F::Scalar::from_u32(3 * u32::from(degree));
-        self.error += roundings * F::Scalar::EPSILON * reach(self.net);
+        self.error += roundings * F::Scalar::EPSILON * self.reach;
         bernstein::restrict(self.degrees, self.net, direction, part);
-    }
-
-    fn corners(&self) -> [F; 4] {
-        let row = self.degrees.columns() - 1;
-        let last = self.net.len().saturating_sub(1);
-        [0, last.saturating_sub(row), row, last].map(|k| self.net.get(k).copied().unwrap_or(F::ZERO))
+        // A part reaches no farther than the whole, so a bound need not be renewed each time.
+        if direction == Direction::V {
+            self.reach = reach(self.net);
+        }
     }
 }
 
@@ -131,15 +131,17 @@ fn projection_error<S: Scalar>() -> S {
     S::EPSILON * S::from_u32(4)
 }
 
-/// Whether f and g both take both signs, or nearly; if not, no point of the surface is on the ray.
+/// The largest |f| or |g|, if both take both signs, or nearly; if not, no point of the surface is on the ray.
 #[inline(always)]
-fn straddles<F: Flat>(net: &[F], error: F::Scalar) -> bool {
-    let none = [F::Scalar::INFINITY, F::Scalar::LEAST];
-    let [f, g] = net.iter().fold([none; 2], |[[f0, f1], [g0, g1]], point| {
-        let [f, g] = point.f_g();
-        [[f0.lesser(f), f1.greater(f)], [g0.lesser(g), g1.greater(g)]]
-    });
-    f[0] <= error && f[1] >= -error && g[0] <= error && g[1] >= -error
+fn straddling<F: Flat>(net: &[F], error: F::Scalar) -> Option<F::Scalar> {
+    let (mut low, mut high) = ([F::Scalar::INFINITY; 2], [F::Scalar::LEAST; 2]);
+    for point in net {
+        let f_g = point.f_g();
+        low = [low[0].lesser(f_g[0]), low[1].lesser(f_g[1])];
+        high = [high[0].greater(f_g[0]), high[1].greater(f_g[1])];
+    }
+    let straddles = low[0] <= error && low[1] <= error && high[0] >= -error && high[1] >= -error;
+    straddles.then(|| high[0].greater(high[1]).greater(-low[0]).greater(-low[1]))
 }
 
 impl<P: Point> Clipper<'_, '_, '_, P> {
@@ -156,9 +158,9 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
         let ClipRoom { whole, part, pending, roots, basis } = &mut **room;
         let whole: &[P::Flat] = project_net(&surface.net, planes, whole).map_err(|Full| Limit::Scratch)?;
         let error = projection_error();
-        if !straddles(whole, error) {
+        let Some(reach) = straddling(whole, error) else {
             return Ok(());
-        }
+        };
         if part.len() < whole.len() {
             part.resize(whole.len(), P::Flat::ZERO).map_err(|_| Limit::Scratch)?;
         }
@@ -170,7 +172,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
         roots.clear();
         let least = whole.iter().fold(P::Scalar::ONE, |least, point| least.lesser(point.weight()));
         let tolerance = limits.tolerance * least;
-        let mut part = Part { region: Region::WHOLE, degrees: surface.net.degrees(), net, error };
+        let mut part = Part { region: Region::WHOLE, degrees: surface.net.degrees(), net, reach, error };
         // Whether the last clip, which was of the other parameter, found it settled.
         let mut settled = false;
         let mut bisected = false;
@@ -180,7 +182,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
             let direction = part.region.next;
             part.region.next = direction.other();
             let noise = Noise { error: part.error, tolerance };
-            let mut step = match clip(part.degrees, part.net, direction, normal(part.corners(), direction), &noise) {
+            let mut step = match clip(part.degrees, part.net, direction, &noise) {
                 Clip::Nothing => Step::Done(None),
                 Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
                     part.narrow(direction, [from, to]);
@@ -247,7 +249,7 @@ enum Step<S> {
 
 /// Regions wider than this, in u or in v, are clipped on without asking whether they hold one root at most: few would be
 /// proved to, and asking costs a third of a clip.
-const PROVABLE: f64 = 0.125;
+const PROVABLE: f64 = 0.0025;
 
 /// Newton's method, in a region that is proved to hold at most one root: ends with that root, or with the proof that there
 /// is none.
@@ -265,8 +267,7 @@ fn contract<P: Point>(
     basis: &mut BasisView<'_, P::Scalar>,
     work: &mut Work,
 ) -> Result<Step<P::Scalar>, Limit> {
-    let [width_u, width_v] = region.widths();
-    if !(width_u.greater(width_v) <= P::Scalar::from_f64(PROVABLE)) {
+    if !(surface.strays(region.widths()) <= P::Scalar::from_f64(PROVABLE)) {
         return Ok(Step::On);
     }
     // Ends: each turn counts a step against its budget; and the region halves until the number type holds no more.
