@@ -153,38 +153,42 @@ impl Degrees {
     }
 }
 
-/// Value and first derivatives at (u, v) of the sum over `net`; slightly outside [0, 1] the polynomials go on.
+/// Value and first derivatives at (u, v) of the sum over what `part` takes from each element of `net`; slightly outside
+/// [0, 1] the polynomials go on.
 ///
 /// `basis` serves all degrees but 2 × 2 and 3 × 3, which are unrolled and leave it alone.
 #[inline(always)]
-pub(crate) fn jet<S: Scalar, T: Linear<S>>(
+pub(crate) fn jet<S: Scalar, P: Copy, T: Linear<S>>(
     degrees: Degrees,
-    net: &[T],
+    net: &[P],
     [u, v]: [S; 2],
     basis: &mut BasisView<'_, S>,
+    part: impl Fn(P) -> T,
 ) -> Result<Jet<T>, Full> {
     // These two shapes are nearly all that models hold; unrolled, they run about twice as fast as the loops.
-    if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[T; 16]>::try_from(net)) {
-        return Ok(jet_unrolled::<S, T, 4, 4, 16>(net, &cubic(u), &cubic(v)));
+    if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[P; 16]>::try_from(net)) {
+        return Ok(jet_unrolled::<S, P, T, 4, 4, 16>(net, &cubic(u), &cubic(v), part));
     }
-    if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&[T; 9]>::try_from(net)) {
-        return Ok(jet_unrolled::<S, T, 3, 3, 9>(net, &quadratic(u), &quadratic(v)));
+    if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&[P; 9]>::try_from(net)) {
+        return Ok(jet_unrolled::<S, P, T, 3, 3, 9>(net, &quadratic(u), &quadratic(v), part));
     }
-    jet_any_degree(degrees, net, [u, v], basis)
+    jet_any_degree(degrees, net, [u, v], basis, part)
 }
 
 #[inline(never)]
-fn jet_any_degree<S: Scalar, T: Linear<S>>(
+fn jet_any_degree<S: Scalar, P: Copy, T: Linear<S>>(
     degrees: Degrees,
-    net: &[T],
+    net: &[P],
     [u, v]: [S; 2],
     basis: &mut BasisView<'_, S>,
+    part: impl Fn(P) -> T,
 ) -> Result<Jet<T>, Full> {
     basis.fill(degrees, [u, v])?;
     let mut jet = Jet { point: T::ZERO, du: T::ZERO, dv: T::ZERO };
     for (row, &[b, b1, _]) in net.chunks_exact(degrees.columns()).zip(basis.u.iter()) {
         let (mut point, mut dv) = (T::ZERO, T::ZERO);
         for (&p, &[c, c1, _]) in row.iter().zip(basis.v.iter()) {
+            let p = part(p);
             point = point + p * c;
             dv = dv + p * c1;
         }
@@ -193,29 +197,6 @@ fn jet_any_degree<S: Scalar, T: Linear<S>>(
         jet.dv = jet.dv + dv * b;
     }
     Ok(jet)
-}
-
-/// The value alone of the sum over the numbers that `part` takes from each element of `net`; as [`jet`] otherwise.
-#[inline(always)]
-pub(crate) fn value<S: Scalar, P: Copy, T: Linear<S>>(
-    degrees: Degrees,
-    net: &[P],
-    [u, v]: [S; 2],
-    basis: &mut BasisView<'_, S>,
-    part: impl Fn(P) -> T,
-) -> Result<T, Full> {
-    if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[P; 16]>::try_from(net)) {
-        let (bu, bv) = (cubic(u), cubic(v));
-        let row = |i: usize| (0..4).fold(T::ZERO, |sum, j| sum + part(net[4 * i + j]) * bv[j][0]);
-        return Ok((0..4).fold(T::ZERO, |sum, i| sum + row(i) * bu[i][0]));
-    }
-    basis.fill(degrees, [u, v])?;
-    let mut sum = T::ZERO;
-    for (row, &[b, ..]) in net.chunks_exact(degrees.columns()).zip(basis.u.iter()) {
-        let along = row.iter().zip(basis.v.iter()).fold(T::ZERO, |sum, (&p, &[c, ..])| sum + part(p) * c);
-        sum = sum + along * b;
-    }
-    Ok(sum)
 }
 
 impl<S: Scalar> BasisView<'_, S> {
@@ -390,18 +371,21 @@ fn quadratic<S: Scalar>(t: S) -> [[S; 2]; 3] {
 
 /// [`jet`] for an order known when compiling; `N` is `R · C`.
 #[inline(always)]
-fn jet_unrolled<S: Scalar, T: Linear<S>, const R: usize, const C: usize, const N: usize>(
-    net: &[T; N],
+fn jet_unrolled<S: Scalar, P: Copy, T: Linear<S>, const R: usize, const C: usize, const N: usize>(
+    net: &[P; N],
     bu: &[[S; 2]; R],
     bv: &[[S; 2]; C],
+    part: impl Fn(P) -> T,
 ) -> Jet<T> {
     const { assert!(R * C == N && R > 0 && C > 0) }
     let mut jet = Jet { point: T::ZERO, du: T::ZERO, dv: T::ZERO };
     for i in 0..R {
-        let (mut point, mut dv) = (net[i * C] * bv[0][0], net[i * C] * bv[0][1]);
+        let first = part(net[i * C]);
+        let (mut point, mut dv) = (first * bv[0][0], first * bv[0][1]);
         for j in 1..C {
-            point = point + net[i * C + j] * bv[j][0];
-            dv = dv + net[i * C + j] * bv[j][1];
+            let p = part(net[i * C + j]);
+            point = point + p * bv[j][0];
+            dv = dv + p * bv[j][1];
         }
         jet.point = jet.point + point * bu[i][0];
         jet.du = jet.du + point * bu[i][1];

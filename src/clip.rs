@@ -221,7 +221,7 @@ fn hull_at_zero<S: Scalar, const N: usize>(
         let [low, high] = extents[k];
         (least, largest) = (least.lesser(low), largest.greater(high));
     }
-    // Nothing only if it is separated from zero by more than rounding. A NaN clips nothing.
+    // Nothing only if it is separated from zero by more than that. A NaN clips nothing.
     if least > error || largest < -error {
         return Clip::Nothing;
     }

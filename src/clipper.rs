@@ -126,9 +126,10 @@ fn reach<F: Flat>(net: &[F]) -> F::Scalar {
     most[0].greater(most[1]).greater(most[2].greater(most[3]))
 }
 
-/// By how much a projected coefficient may be off: some four roundings of numbers below 2.
+/// By how much a projected coefficient may be off: some three roundings of numbers below 4; twice that, so that an edge which
+/// two surfaces share but for its last bits is lost by neither.
 fn projection_error<S: Scalar>() -> S {
-    S::EPSILON * S::from_u32(4)
+    S::EPSILON * S::from_u32(8)
 }
 
 /// The largest |f| or |g|, if both take both signs, or nearly; if not, no point of the surface is on the ray.
@@ -218,9 +219,8 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
             };
             // A root on the border between two regions may be found in both.
             let known = |at| roots.iter().any(|root| surface.same_root([root.u, root.v], at, limits.tolerance));
-            if let Some(Place { at, grazing }) = done.filter(|place| !known(place.at)) {
-                let depth = planes.depth_on(&surface.net, at, basis).map_err(|Full| Limit::Scratch)?;
-                let root = Root { u: at[0], v: at[1], depth, grazing };
+            if let Some(place) = done.filter(|place| !known(place.at)) {
+                let root = place.root(&surface.net, planes, limits, basis)?;
                 if !found(root, !pending.is_empty(), work)? {
                     return Ok(());
                 }
@@ -276,7 +276,7 @@ fn contract<P: Point>(
         let strays = surface.strays(halves);
         let [u, v] = region.middle();
         spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
-        let jet = bernstein::jet(surface.net.degrees(), whole, [u, v], basis).map_err(|Full| Limit::Scratch)?;
+        let jet = bernstein::jet(surface.net.degrees(), whole, [u, v], basis, |p| p).map_err(|Full| Limit::Scratch)?;
         let local = Local::of(&jet);
         let [along_u, along_v] = local.inverse_bounds(strays);
         // A NaN or a singular Jacobian proves nothing.
@@ -290,7 +290,7 @@ fn contract<P: Point>(
         if strays <= limits.tolerance {
             let held = region.nearest(next);
             let on_it = local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance);
-            return Ok(Step::Done(on_it.then(|| Place { at: held, grazing: local.is_tangent() })));
+            return Ok(Step::Done(on_it.then_some(Place { at: held, local })));
         }
         let [slack_u, slack_v] = local.inverse_bounds(strays + limits.tolerance);
         let near = [[next[0] - slack_u, next[0] + slack_u], [next[1] - slack_v, next[1] + slack_v]];
@@ -316,11 +316,11 @@ fn nearest<P: Point>(
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Option<Place<P::Scalar>>, Limit> {
     let [[u0, u1], [v0, v1]] = part.region.sides;
-    let allowed = tolerance * P::Scalar::from_u32(4) + part.error * P::Scalar::from_u32(16) + noise::<P::Scalar>();
+    let allowed = tolerance * P::Scalar::TWO + part.error * P::Scalar::from_u32(16) + noise::<P::Scalar>();
     // Whether it lies before the interval, its depth, and the place: in order of worth.
     let mut best: Option<(bool, P::Scalar, Place<P::Scalar>)> = None;
     for at in [part.region.middle(), [u0, v0], [u0, v1], [u1, v0], [u1, v1]] {
-        let jet = bernstein::jet(surface.net.degrees(), whole, at, basis).map_err(|Full| Limit::Scratch)?;
+        let jet = bernstein::jet(surface.net.degrees(), whole, at, basis, |p| p).map_err(|Full| Limit::Scratch)?;
         let local = Local::of(&jet);
         if !(local.residual() <= allowed) {
             continue;
@@ -328,8 +328,11 @@ fn nearest<P: Point>(
         let depth = planes.depth_on(&surface.net, at, basis).map_err(|Full| Limit::Scratch)?;
         let early = planes.is_before_interval(depth);
         if best.as_ref().is_none_or(|(before, least, _)| (early, depth) < (*before, *least)) {
-            best = Some((early, depth, Place { at, grazing: local.is_tangent() }));
+            best = Some((early, depth, Place { at, local }));
         }
     }
     Ok(best.map(|(_, _, place)| place))
 }
+
+#[cfg(test)]
+mod tests;

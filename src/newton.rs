@@ -13,7 +13,7 @@ use crate::planes::{Planes, project_net};
 use crate::point::{Flat, Point};
 use crate::ray::Hit;
 use crate::scalar::Scalar;
-use crate::surface::Surface;
+use crate::surface::{Net, Surface};
 use heapless::vec::VecView;
 
 /// A root: where a ray meets a surface.
@@ -25,7 +25,9 @@ pub struct Root<S> {
     pub v: S,
     /// Depth along the ray, in the frame.
     pub depth: S,
-    /// Whether the ray is tangent to working precision.
+    /// Whether the ray is tangent to working precision: at an angle to the surface whose sine is below 4 √tolerance. A
+    /// displacement of the ray by the tolerance may then merge this root with another, and t, u and v are known to about
+    /// half the digits.
     pub grazing: bool,
 }
 
@@ -66,10 +68,15 @@ impl<S: Scalar> Local<S> {
         f.abs() + g.abs()
     }
 
-    /// Whether the ray is tangent to working precision.
+    /// Whether the ray is tangent, from the derivatives of the depth; see [`Root::grazing`]. A pole has no tangent plane,
+    /// and is not.
     #[inline(always)]
-    pub(crate) fn is_tangent(&self) -> bool {
-        self.determinant.abs() < tangent::<S>() * self.size
+    fn is_tangent(&self, [depth_u, depth_v]: [S; 2], tolerance: S) -> bool {
+        // The surface's normal in the system of the two planes and depth, in which the ray is (0, 0, 1).
+        let ([fu, gu], [fv, gv]) = (self.du, self.dv);
+        let normal = [gu * depth_v - depth_u * gv, depth_u * fv - fu * depth_v, self.determinant];
+        let [a, b, c] = normal.map(S::abs);
+        c < sine(tolerance) * (a + b + c)
     }
 
     /// The step to where both distances would be 0; `None` if the Jacobian is singular to working precision.
@@ -101,10 +108,50 @@ impl<S: Scalar> Local<S> {
     }
 }
 
-/// Where a search ended: (u, v), and whether the ray is tangent there.
+/// Where a search ended: (u, v), and the surface there or nearby.
 pub(crate) struct Place<S> {
     pub(crate) at: [S; 2],
-    pub(crate) grazing: bool,
+    pub(crate) local: Local<S>,
+}
+
+impl<S: Scalar> Place<S> {
+    /// The root there.
+    #[inline(always)]
+    pub(crate) fn root<P: Point<Scalar = S>>(
+        &self,
+        net: &Net<'_, P>,
+        planes: &Planes<S>,
+        limits: &Limits<S>,
+        basis: &mut BasisView<'_, S>,
+    ) -> Result<Root<S>, Limit> {
+        let depth = planes.depth_on(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
+        // Between two points of the frame f and g differ by 4 at most and depth by 2, and derivatives by a degree times that:
+        // a bound of the normal's three parts together, which tells most roots from grazing ones.
+        let longest = S::from_u32((64 * net.degree_u() * net.degree_v()) as u32);
+        let steep = self.local.determinant.abs() >= sine(limits.tolerance) * longest;
+        let grazing = !steep && self.is_tangent(net, planes, limits, basis)?;
+        let [u, v] = self.at;
+        Ok(Root { u, v, depth, grazing })
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn is_tangent<P: Point<Scalar = S>>(
+        &self,
+        net: &Net<'_, P>,
+        planes: &Planes<S>,
+        limits: &Limits<S>,
+        basis: &mut BasisView<'_, S>,
+    ) -> Result<bool, Limit> {
+        let along = planes.depth_derivatives(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
+        Ok(self.local.is_tangent(along, limits.tolerance))
+    }
+}
+
+/// The sine below which an angle between ray and surface makes a hit grazing.
+#[inline(always)]
+fn sine<S: Scalar>(tolerance: S) -> S {
+    tolerance.sqrt() * S::from_u32(4)
 }
 
 /// One ray and one surface.
@@ -141,14 +188,13 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     ///
     /// The iteration may leave the patch that gave the start: it works on the whole surface.
     pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
-        let Some(Place { at: [u, v], grazing }) = self.iterate(start, work)? else {
-            return Ok(None);
-        };
-        let depth = self.planes.depth_on(&self.surface.net, [u, v], self.basis).map_err(|Full| Limit::Scratch)?;
-        Ok(Some(Root { u, v, depth, grazing }))
+        match self.iterate(start, work)? {
+            Some(place) => place.root(&self.surface.net, self.planes, self.limits, self.basis).map(Some),
+            None => Ok(None),
+        }
     }
 
-    /// The parameters that the iteration comes to, and whether the ray is tangent there.
+    /// Where the iteration comes to.
     #[inline(always)]
     fn iterate(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Place<P::Scalar>>, Limit> {
         let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
@@ -168,12 +214,13 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         // Ends: a fixed number of evaluations.
         for _ in 0..limits.newton_iterations {
             spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
-            let jet = bernstein::jet(surface.net.degrees(), flat, [u, v], self.basis).map_err(|Full| Limit::Scratch)?;
+            let jet = bernstein::jet(surface.net.degrees(), flat, [u, v], self.basis, |p| p)
+                .map_err(|Full| Limit::Scratch)?;
             let local = Local::of(&jet);
             let residual = local.residual();
             // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
             if residual <= noise::<P::Scalar>() * local.weight {
-                return Ok(Some(Place { at: [u, v], grazing: local.is_tangent() }));
+                return Ok(Some(Place { at: [u, v], local }));
             }
             // Damping. A NaN counts as growth.
             if !(residual < last) {
@@ -196,7 +243,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
                 if !local.may_hold([next_u - held_u, next_v - held_v], limits.tolerance) {
                     return Ok(None);
                 }
-                return Ok(Some(Place { at: [held_u, held_v], grazing: local.is_tangent() }));
+                return Ok(Some(Place { at: [held_u, held_v], local }));
             }
             // An iterate outside is held at the edge, where a root may lie; one that goes on as far is leaving for good.
             let beyond = (next_u - held_u).abs() + (next_v - held_v).abs();
@@ -216,13 +263,6 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
 #[inline(always)]
 pub(crate) fn noise<S: Scalar>() -> S {
     S::EPSILON * S::TWO
-}
-
-/// Below this sine of the angle between ray and surface, half the digits of (u, v) are rounding: a grazing hit.
-#[inline(always)]
-fn tangent<S: Scalar>() -> S {
-    // √ε, as a constant of each type.
-    S::from_f64(if S::EPSILON.to_f64() > 1e-10 { 3.5e-4 } else { 1.5e-8 })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! contain the axis along which the ray is steepest, so that projecting costs two products instead of six. The distance
 //! √(f² + g²) so measured is at least the point's true distance from the ray, and at most √3 times it.
 
-use crate::bernstein::{BasisView, Full, Linear, Tuple};
+use crate::bernstein::{BasisView, Full, Jet, Linear, Tuple};
 use crate::point::{Flat, Point};
 use crate::ray::{Axis, Interval};
 use crate::scalar::Scalar;
@@ -174,13 +174,29 @@ impl<S: Scalar> Planes<S> {
         let [steep, ..] = self.axes;
         let along = |p: P| steep.of(&p.weighted_position());
         let place = if P::RATIONAL {
-            let Tuple([place, weight]) = net.sum(at, basis, |p| Tuple([along(p), p.weight()]))?;
+            let Tuple([place, weight]) = net.jet_of(at, basis, |p| Tuple([along(p), p.weight()]))?.point;
             place / weight
         } else {
-            let Tuple([place]) = net.sum(at, basis, |p| Tuple([along(p)]))?;
+            let Tuple([place]) = net.jet_of(at, basis, |p| Tuple([along(p)]))?.point;
             place
         };
         Ok((place - self.ordered[0]) * self.forward)
+    }
+
+    /// The derivatives in u and v of the depth of a net's point, times its weight.
+    pub(crate) fn depth_derivatives<P: Point<Scalar = S>>(
+        &self,
+        net: &Net<'_, P>,
+        [u, v]: [S; 2],
+        basis: &mut BasisView<'_, S>,
+    ) -> Result<[S; 2], Full> {
+        let [steep, ..] = self.axes;
+        let Jet { point, du, dv } = net.jet(u, v, basis)?;
+        let place = steep.of(&point.position());
+        let along = |d: P, weight: S| (steep.of(&d.weighted_position()) - place * weight) * self.forward;
+        // Of a plain point the weight is constant, and its derivative 0.
+        let weight = |d: P| if P::RATIONAL { d.weight() } else { S::ZERO };
+        Ok([along(du, weight(du)), along(dv, weight(dv))])
     }
 
     #[inline(always)]

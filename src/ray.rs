@@ -143,6 +143,7 @@ pub struct Hit<S> {
     pub v: S,
     /// The surface's number in its scene, from 0.
     pub surface: u32,
-    /// Whether the ray is tangent there to working precision: t, u and v are then known to about half the digits only.
+    /// Whether the ray is tangent there to working precision: t, u and v are then known to about half the digits only. See
+    /// [`Root::grazing`](crate::newton::Root::grazing).
     pub grazing: bool,
 }

@@ -116,18 +116,18 @@ impl<'m, P: Point> Net<'m, P> {
     /// on.
     #[inline]
     pub fn jet(&self, u: P::Scalar, v: P::Scalar, basis: &mut BasisView<'_, P::Scalar>) -> Result<Jet<P>, Full> {
-        bernstein::jet(self.degrees(), self.points, [u, v], basis)
+        bernstein::jet(self.degrees(), self.points, [u, v], basis, |p| p)
     }
 
-    /// The sum over the numbers that `part` takes from each control point, at (u, v).
+    /// Value and first derivatives at (u, v) of what `part` takes from each control point.
     #[inline(always)]
-    pub(crate) fn sum<T: Linear<P::Scalar>>(
+    pub(crate) fn jet_of<T: Linear<P::Scalar>>(
         &self,
         at: [P::Scalar; 2],
         basis: &mut BasisView<'_, P::Scalar>,
         part: impl Fn(P) -> T,
-    ) -> Result<T, Full> {
-        bernstein::value(self.degrees(), self.points, at, basis, part)
+    ) -> Result<Jet<T>, Full> {
+        bernstein::jet(self.degrees(), self.points, at, basis, part)
     }
 
     /// The position at (u, v), weight divided out.

@@ -40,7 +40,7 @@ where
         }
         .map(P::Scalar::from_f64);
         let one = net.jet(u, v, &mut Basis::<P::Scalar, 0>::new().view()).unwrap();
-        let other = jet_any_degree(net.degrees(), &points, [u, v], &mut basis.view()).unwrap();
+        let other = jet_any_degree(net.degrees(), &points, [u, v], &mut basis.view(), |p| p).unwrap();
         for (a, b) in [(one.point, other.point), (one.du, other.du), (one.dv, other.dv)] {
             let (p, q) = (a.weighted_position(), b.weighted_position());
             assert!((0..3).all(|k| (p[k] - q[k]).abs() <= allowance), "{u:?} {v:?}: {a:?} {b:?}");

@@ -38,3 +38,27 @@ fn the_edge_is_as_wide_as_the_tolerance() {
         }
     }
 }
+
+/// Along x over the trough z = x² one derivative of the projected surface vanishes at the bottom, and the other does not: seen
+/// from the ray alone nothing is parallel, and only the depth tells that the ray is tangent.
+#[test]
+fn tangent_means_an_angle_not_a_small_determinant() {
+    let trough = [0.0625, -0.0625, 0.0625];
+    let points: [Plain<f64>; 6] = core::array::from_fn(|k| {
+        let (i, j) = (k / 2, k % 2);
+        Plain([i as f64 * 0.25 - 0.25, j as f64 * 0.5 - 0.25, trough[i]])
+    });
+    let frame = Frame::new(Aabb { low: [-0.5; 3], high: [0.5; 3] });
+    let net = Net::new(2, 1, &points).unwrap();
+    let surface = Surface { number: 0, net, bend: net.bend() };
+    let (mut flat, mut basis) = (heapless::Vec::<_, 6>::new(), Basis::<f64, 3>::new());
+    for (height, grazing) in [(1e-2, false), (1e-8, false), (1e-14, true)] {
+        let ray = frame.ray([-0.4, 0.1, height], [1.0, 0.0, 0.0]).unwrap();
+        let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
+        let (limits, mut work) = (Limits { newton_iterations: 40, ..Limits::default() }, Work::default());
+        let mut basis = basis.view();
+        let mut solver = Solver::new(&surface, &planes, &limits, &mut flat, &mut basis);
+        let root = solver.solve([0.2, 0.5], &mut work).unwrap().unwrap();
+        assert_eq!(root.grazing, grazing, "{height} {root:?}");
+    }
+}
