@@ -51,7 +51,7 @@
 //! # Ok::<(), Box<dyn core::error::Error>>(())
 //! ```
 //!
-//! A B-spline surface is cut into Bézier surfaces first, likewise in lent memory: see [`bspline`].
+//! A B-spline surface is cut into Bézier surfaces first, likewise in lent memory: see [`pieces`].
 //!
 //! The modules stand in the order in which data flows; each knows only those above it.
 
@@ -68,6 +68,7 @@ pub mod point;
 pub mod surface;
 
 pub mod bspline;
+pub mod pieces;
 
 pub mod frame;
 

@@ -1,6 +1,7 @@
 //! B-splines and Bézier surfaces by their definitions, in `f64`: nothing here is taken from the kernel but its points.
 
-use patchray::bspline::{BSpline, Part};
+use patchray::bspline::BSpline;
+use patchray::pieces::Part;
 use patchray::point::Point;
 use patchray::scalar::Scalar;
 use patchray::surface::{Direction, Net};

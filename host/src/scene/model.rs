@@ -1,5 +1,5 @@
 //! What a patch file holds: surfaces by control points, as written.
-use patchray::bspline::Part;
+use patchray::pieces::Part;
 
 /// A Bézier surface as its file states it, in the file's units.
 ///

@@ -1,5 +1,6 @@
 //! B-spline surfaces as a file states them, and as the Bézier surfaces that are traced.
-use patchray::bspline::{BSpline, BSplineError, Piece, PieceError, PieceMemory, Pieces};
+use patchray::bspline::{BSpline, BSplineError};
+use patchray::pieces::{Piece, PieceError, PieceMemory, Pieces};
 use patchray::point::{Plain, Point, Weighted};
 use patchray::surface::Direction;
 use serde::Serialize;

@@ -1,9 +1,10 @@
 //! The entry point that writes errors out: apart, because it alone links the formatting of `core`.
 
 use core::fmt::{Display, Write};
-use patchray::bspline::{BSplineError, PieceError};
+use patchray::bspline::BSplineError;
 use patchray::grid::GridError;
 use patchray::limits::{GaveUp, Limit};
+use patchray::pieces::PieceError;
 use patchray::ray::RayError;
 use patchray::scene::SceneError;
 use patchray::subdivide::SubdivideError;
