@@ -134,12 +134,18 @@ impl core::fmt::Display for Direction {
 ///
 /// Of 8 bits, so that degree + 1 is not 0 whatever it holds: rows of length 0 could not be cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Degrees {
+pub struct Degrees {
     pub(crate) u: u8,
     pub(crate) v: u8,
 }
 
 impl Degrees {
+    /// Degrees of 1 to [`MAX_DEGREE`]; `None` for others.
+    pub fn new(u: usize, v: usize) -> Option<Self> {
+        let within = |degree| u8::try_from(degree).ok().filter(|_| (1..=MAX_DEGREE).contains(&degree));
+        Some(Degrees { u: within(u)?, v: within(v)? })
+    }
+
     /// The number of rows, of one u each.
     #[inline(always)]
     pub(crate) fn rows(self) -> usize {
@@ -207,9 +213,10 @@ impl<S: Scalar> BasisView<'_, S> {
     }
 }
 
-/// The part of a net over [from, to] of one parameter, in place, by de Casteljau's algorithm.
+/// The part of a net over [from, to] of one parameter, 0 ≤ from ≤ to ≤ 1, in place, by de Casteljau's algorithm. A side at
+/// the border of [0, 1] stays to the bit. A net that is too short for its degrees stays as it is in part.
 #[inline(always)]
-pub(crate) fn restrict<S: Scalar, T: Linear<S>>(degrees: Degrees, net: &mut [T], direction: Direction, part: [S; 2]) {
+pub fn restrict<S: Scalar, T: Linear<S>>(degrees: Degrees, net: &mut [T], direction: Direction, part: [S; 2]) {
     if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&mut [T; 16]>::try_from(&mut *net)) {
         return restrict_unrolled::<S, T, 4, 16>(net, direction, part);
     }
@@ -269,7 +276,7 @@ fn restrict_lines<S: Scalar, T: Linear<S>, const ORDER: usize, const N: usize>(
 
 /// De Casteljau twice on `count` points, `stride` apart from `first` on: keep what is below `to`, then what is above
 /// `from`.
-pub(crate) fn restrict_line<S: Scalar, T: Linear<S>>(
+fn restrict_line<S: Scalar, T: Linear<S>>(
     points: &mut [T],
     first: usize,
     stride: usize,

@@ -109,16 +109,11 @@ fn position<F: Flat>(point: F) -> [F::Scalar; 2] {
     point.f_g().map(|c| c / weight)
 }
 
-/// Clips the interval of one parameter of a projected net.
+/// Clips the interval of one parameter of a projected net, (n + 1)(m + 1) points for degrees n × m, u outer.
 ///
 /// A clip is wider than the hull's by what rounding may have done, so no root is lost to rounding.
 #[inline(always)]
-pub(crate) fn clip<F: Flat>(
-    degrees: Degrees,
-    net: &[F],
-    direction: Direction,
-    noise: &Noise<F::Scalar>,
-) -> Clip<F::Scalar> {
+pub fn clip<F: Flat>(degrees: Degrees, net: &[F], direction: Direction, noise: &Noise<F::Scalar>) -> Clip<F::Scalar> {
     // As in evaluation, the shapes of nearly all models are unrolled.
     if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[F; 16]>::try_from(net)) {
         return clip_unrolled::<F, 4, 16>(net, direction, noise);

@@ -108,7 +108,8 @@ impl<'m, P: Point> Net<'m, P> {
         [0, last, row, last + row].map(|k| self.points.get(k).copied().unwrap_or(P::EMPTY))
     }
 
-    pub(crate) fn degrees(&self) -> Degrees {
+    /// Both degrees.
+    pub fn degrees(&self) -> Degrees {
         self.degrees
     }
 
