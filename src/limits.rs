@@ -75,7 +75,7 @@ impl<S: Scalar> Default for Limits<S> {
             patches: 1_000_000,
             voxels: 1_000_000,
             newton_steps: 100_000,
-            clip_steps: 20_000,
+            clip_steps: 50_000,
             bisections: 10_000,
             pending_domains: 64,
         }
