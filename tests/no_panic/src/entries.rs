@@ -6,12 +6,14 @@ use heapless::Vec;
 use patchray::arena::Arena;
 use patchray::bernstein::{Basis, Jet, MAX_DEGREE};
 use patchray::bspline::{BSpline, BSplineError};
+use patchray::clipper::Clipper;
+use patchray::domain::Domain;
 use patchray::frame::{Aabb, Frame};
 use patchray::grid::{Grid, GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::limits::{Extent, GaveUp, Limit, Limits, Work};
 use patchray::measure::Measure;
 use patchray::method::Remembered;
-use patchray::method::{Scratch, newton, newton_coherent};
+use patchray::method::{ClipScratch, Scratch, clipping, clipping_coherent, newton, newton_coherent};
 use patchray::newton::{Root, Solver};
 use patchray::patch::Patches;
 use patchray::patch::{Crossing, Parallelepiped, Patch, Pierce};
@@ -19,6 +21,7 @@ use patchray::pieces::{InKnots, Part, Piece, PieceError, PieceMemory, Pieces};
 use patchray::planes::{DepthRange, Planes, Projected, project_net};
 use patchray::point::{Plain, Point, Weighted};
 use patchray::ray::{Hit, Interval, Ray, RayError};
+use patchray::region::{Order, Region};
 use patchray::scalar::{Scalar, Vector3};
 use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions, SurfaceSlot};
 use patchray::subdivide::{
@@ -26,12 +29,14 @@ use patchray::subdivide::{
 };
 use patchray::surface::{Direction, Net, NetError, Surface};
 use patchray::tree::{Descent, Tree};
-use patchray::verify::testing_ray;
+use patchray::verify::{Verdict, testing_ray, verdict};
 use patchray::walk::{Voxel, Walk};
 
 /// Capacities for the highest degree: the owner's choice, and the largest that makes sense.
 const ORDER: usize = MAX_DEGREE + 1;
 const POINTS: usize = ORDER * ORDER;
+const PENDING: usize = 64;
+const HITS: usize = 32;
 
 type Found<S> = Result<Option<Hit<S>>, GaveUp<S>>;
 
@@ -396,6 +401,144 @@ unsafe extern "C" fn trace_coherent<P: Point>(
     });
 }
 
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn trace_clipping<P: Point>(
+    scene: &LentScene<P>,
+    asked: &Asked<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ClipScratch<P, ORDER, POINTS, PENDING>,
+    work: &mut Work,
+    out: &mut Result<Found<P::Scalar>, RayError>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let scene = unsafe { scene.view() };
+    *out = asked
+        .ray(&scene)
+        .map(|(ray, interval)| clipping::closest(&scene, &ray, &interval, limits, &mut scratch.view(), work));
+}
+
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn trace_clipping_coherent<P: Point>(
+    scene: &LentScene<P>,
+    patches: &LentPatches<P::Scalar>,
+    grids: &LentGrids<P::Scalar>,
+    memory: &Lent<Remembered<P::Scalar>>,
+    scan_line: u32,
+    asked: &Asked<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ClipScratch<P, ORDER, POINTS, PENDING>,
+    work: &mut Work,
+    out: &mut Result<Found<P::Scalar>, RayError>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (scene, patches, grids, memory) = unsafe { (scene.view(), patches.patches(), grids.view(), memory.slots()) };
+    *out = asked.ray(&scene).map(|(ray, interval)| {
+        let room = &mut scratch.view();
+        clipping_coherent::closest(&scene, &patches, &grids, memory, scan_line, &ray, &interval, limits, room, work)
+    });
+}
+
+type Listed<S> = Result<(Result<(), GaveUp<S>>, Found<S>), RayError>;
+
+/// All hits, and any hit, by Newton's method.
+///
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn hits_newton<P: Point>(
+    scene: &LentScene<P>,
+    patches: &LentPatches<P::Scalar>,
+    asked: &Asked<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut Scratch<P, ORDER, POINTS>,
+    hits: &mut Vec<Hit<P::Scalar>, HITS>,
+    work: &mut Work,
+    out: &mut Listed<P::Scalar>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (scene, tree, patches) = unsafe { (scene.view(), patches.tree(), patches.patches()) };
+    *out = asked.ray(&scene).map(|(ray, interval)| {
+        let view = &mut scratch.view();
+        let any = newton::any_hit(&scene, &patches, &tree, &ray, &interval, limits, view, work);
+        (newton::all_hits(&scene, &patches, &tree, &ray, &interval, limits, view, hits, work), any)
+    });
+}
+
+/// All hits, and any hit, by clipping.
+///
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn hits_clipping<P: Point>(
+    scene: &LentScene<P>,
+    asked: &Asked<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ClipScratch<P, ORDER, POINTS, PENDING>,
+    hits: &mut Vec<Hit<P::Scalar>, HITS>,
+    work: &mut Work,
+    out: &mut Listed<P::Scalar>,
+) {
+    // SAFETY: the caller keeps the contract of `slots`.
+    let scene = unsafe { scene.view() };
+    *out = asked.ray(&scene).map(|(ray, interval)| {
+        let room = &mut scratch.view();
+        let any = clipping::any_hit(&scene, &ray, &interval, limits, room, work);
+        (clipping::all_hits(&scene, &ray, &interval, limits, room, hits, work), any)
+    });
+}
+
+/// Clipping alone, on whatever calls itself a surface, in room too small for most, and in any order.
+extern "C" fn clip_roots<P: Point>(
+    surface: &Surface<'static, P>,
+    planes: &Planes<P::Scalar>,
+    order: &Order<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ClipScratch<P, 3, 9, 2>,
+    work: &mut Work,
+    roots: &mut Vec<Root<P::Scalar>, HITS>,
+    out: &mut Result<(), Limit>,
+) {
+    let room = &mut scratch.view();
+    *out = Clipper { surface, planes, limits, room }
+        .roots(*order, work, |root, wait, _| Ok(roots.push(root).is_ok() && wait));
+}
+
+/// What is asked of one region, and of those that wait.
+#[derive(Debug)]
+pub struct OfRegion<S> {
+    widths: [S; 2],
+    points: [[S; 2]; 2],
+    halves: [Option<[Region<S>; 2]>; 3],
+    narrowed: Region<S>,
+    common: Option<Region<S>>,
+    says: [bool; 3],
+    pushed: Result<(), Limit>,
+    popped: Option<Region<S>>,
+    order: Order<S>,
+}
+
+extern "C" fn region<P: Point>(
+    region: &Region<P::Scalar>,
+    other: &Region<P::Scalar>,
+    domains: &[Domain; 2],
+    order: &mut Order<P::Scalar>,
+    pending: &mut Vec<Region<P::Scalar>, PENDING>,
+    most: u32,
+    &point: &[P::Scalar; 2],
+    out: &mut OfRegion<P::Scalar>,
+) {
+    out.widths = region.widths();
+    out.points = [region.middle(), region.nearest(point)];
+    out.halves = [region.halves(Direction::U), region.halves(Direction::V), region.halves_of_wider()];
+    out.narrowed = *region;
+    out.narrowed.narrow(region.next, point);
+    out.common = region.meet(other.sides);
+    out.says = [region.holds(point), region.adjoins(other), domains[0].adjoins(domains[1])];
+    out.pushed = order.push(*region, pending, most);
+    out.popped = order.pop(pending);
+    out.order = Order::around(Some(point));
+}
+
 /// The solve alone, on whatever calls itself a surface.
 extern "C" fn newton_solve<P: Point>(
     surface: &Surface<'static, P>,
@@ -558,7 +701,7 @@ unsafe extern "C" fn descend<P: Point>(
     }
 }
 
-/// The testing ray alone.
+/// The testing ray alone, and its verdict.
 ///
 /// # Safety
 /// See [`Lent::slots`].
@@ -572,17 +715,18 @@ unsafe extern "C" fn verify<P: Point>(
     limits: &Limits<P::Scalar>,
     work: &mut Work,
     owners: &mut u32,
-    out: &mut Result<(), Limit>,
+    out: &mut (Result<(), Limit>, Result<Verdict, Limit>),
 ) {
     // SAFETY: the caller keeps the contract of `slots`.
     let (grids, patches) = unsafe { (grids.view(), patches.slots()) };
     let Some(grid) = grids.of_surface(surface) else {
         return;
     };
-    *out = testing_ray(&grid, patches, planes, root, nearest, limits, work, |listed, _| {
+    out.0 = testing_ray(&grid, patches, planes, root, nearest, limits, work, |listed, _| {
         *owners = owners.wrapping_add(u32::from(listed.owner));
-        Ok(())
+        Ok(*owners < limits.patches)
     });
+    out.1 = verdict(&grid, patches, planes, root, nearest, limits, work);
 }
 
 /// An arena asked for anything.
@@ -631,5 +775,6 @@ macro_rules! export {
 
 export! {
     net evaluate cut project build look patches tree grids trace_newton trace_coherent newton_solve frame patch walk descend
-    verify arena worst_case spline pieces of_pieces
+    verify arena worst_case spline pieces of_pieces trace_clipping trace_clipping_coherent hits_newton hits_clipping
+    clip_roots region
 }
