@@ -105,6 +105,21 @@ impl<F: Flat> Part<'_, F> {
             self.reach = reach(self.net);
         }
     }
+
+    /// The parameter along which the net is longer, as the ray sees it: by its longest step from one point to the next.
+    #[cold]
+    fn longer(&self) -> Direction {
+        let columns = self.degrees.columns();
+        let step = |p: F, q: F| {
+            let [f, g] = (q - p).f_g();
+            f.abs() + g.abs()
+        };
+        let longest = |most: F::Scalar, (&p, &q): (&F, &F)| most.greater(step(p, q));
+        let along_u = self.net.iter().zip(self.net.iter().skip(columns)).fold(F::Scalar::ZERO, longest);
+        let rows = self.net.chunks_exact(columns);
+        let along_v = rows.fold(F::Scalar::ZERO, |most, row| row.iter().zip(row.iter().skip(1)).fold(most, longest));
+        if along_u >= along_v { Direction::U } else { Direction::V }
+    }
 }
 
 /// The largest |f| or |g| of a projected net.
@@ -190,14 +205,19 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                     settled = false;
                     contract(surface, whole, part.region, limits, basis, work)?
                 }
-                // A width that cannot be halved is as settled as one that need not be.
-                Clip::Part(_) => part.region.halves(direction).map_or(Step::Settled, Step::Bisect),
+                // A width that cannot be halved is as settled as one that need not be. One that moves nothing, as along a
+                // collapsed edge, is not to be halved when the other, settled as seen across its own line, is what keeps it
+                // from being clipped.
+                Clip::Part(_) => {
+                    let halved = if settled { part.longer() } else { direction };
+                    part.region.halves(halved).map_or(Step::Settled, Step::Bisect)
+                }
                 Clip::Settled => Step::Settled,
             };
             if let (Step::Settled, true) = (&step, settled) {
                 step = match nearest(surface, planes, whole, &part, tolerance, basis)? {
                     // Between lines that are near parallel both clips may settle too soon.
-                    None => part.region.halves_of_wider().map_or(Step::Done(None), Step::Bisect),
+                    None => part.region.halves(part.longer()).map_or(Step::Done(None), Step::Bisect),
                     place => Step::Done(place),
                 };
             }

@@ -61,12 +61,6 @@ impl<S: Scalar> Region<S> {
         Some([first, second])
     }
 
-    /// Its halves in the wider parameter; `None` as for [`Region::halves`].
-    pub fn halves_of_wider(&self) -> Option<[Self; 2]> {
-        let [u, v] = self.widths();
-        self.halves(if u >= v { Direction::U } else { Direction::V })
-    }
-
     /// What it has in common with another rectangle; `None` if that is nothing.
     #[inline(always)]
     pub fn meet(&self, sides: [[S; 2]; 2]) -> Option<Self> {

@@ -92,5 +92,4 @@ fn parts_keep_ends_exact_and_halving_ends() {
     assert_eq!(left.meet([[0.6, 1.0], [0.0, 1.0]]), None);
     assert_eq!(left.meet([[0.5, 1.0], [0.25, 2.0]]), Some(region([0.5, 0.5], [0.25, 1.0])));
     assert_eq!(left.meet([[f64::NAN, 1.0], [0.0, 1.0]]), Some(left));
-    assert_eq!(left.halves_of_wider(), left.halves(Direction::V));
 }
