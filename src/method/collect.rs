@@ -107,7 +107,8 @@ pub(super) fn any_hit<P: Point>(
         Ok(if any.is_some() { P::Scalar::LEAST } else { P::Scalar::INFINITY })
     });
     match ended {
-        Ok(()) => Ok(any),
-        Err(limit) => Err(GaveUp { limit, best: None }),
+        // What runs out after the hit was found, while surfaces of its voxel are passed over, changes nothing.
+        Err(limit) if any.is_none() => Err(GaveUp { limit, best: None }),
+        _ => Ok(any),
     }
 }

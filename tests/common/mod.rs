@@ -62,6 +62,44 @@ pub fn with_nets<P: Kind, R>(model: &Model, scale: f64, with: impl FnOnce(&[Net<
     with(&nets.collect::<Vec<_>>())
 }
 
+/// A scene and the memory that it lies in: all that clipping alone needs.
+pub struct Built<P: Point> {
+    pub header: SceneHeader<P::Scalar>,
+    pub points: Vec<P>,
+    pub surfaces: Vec<SurfaceSlot<P::Scalar>>,
+    pub offsets: Vec<u32>,
+    pub references: Vec<u32>,
+}
+
+impl<P: Kind> Built<P> {
+    pub fn new(model: &Model, scale: f64) -> Self {
+        let (mut points, mut surfaces, mut offsets, mut references) = (vec![], vec![], vec![], vec![]);
+        let header = with_nets(model, scale, |nets: &[Net<'_, P>]| {
+            let scene_options = SceneOptions::default();
+            let nothing = SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] };
+            let Err(SceneError::Memory(needs)) = Scene::build(nets, &scene_options, nothing) else {
+                panic!("a scene needs memory")
+            };
+            points = vec![P::EMPTY; needs.points.needed];
+            surfaces = vec![SurfaceSlot::EMPTY; needs.surfaces.needed];
+            offsets = vec![0; needs.offsets.needed];
+            references = vec![0; needs.references.needed];
+            let memory = SceneMemory {
+                points: &mut points,
+                surfaces: &mut surfaces,
+                offsets: &mut offsets,
+                references: &mut references,
+            };
+            Scene::build(nets, &scene_options, memory).unwrap().header()
+        });
+        Built { header, points, surfaces, offsets, references }
+    }
+
+    pub fn scene(&self) -> Scene<'_, P> {
+        Scene::new(self.header, &self.points, &self.surfaces, &self.offsets, &self.references)
+    }
+}
+
 /// A scene with its patches, trees and grids, and the memory that they lie in.
 pub struct Prepared<P: Point> {
     pub header: SceneHeader<P::Scalar>,
@@ -104,25 +142,7 @@ impl<P: Kind> Prepared<P> {
         options: &Subdivision<P::Scalar>,
         grid_options: &GridOptions<P::Scalar>,
     ) -> Self {
-        let (mut points, mut surfaces, mut offsets, mut references) = (vec![], vec![], vec![], vec![]);
-        let header = with_nets(model, scale, |nets: &[Net<'_, P>]| {
-            let scene_options = SceneOptions::default();
-            let nothing = SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] };
-            let Err(SceneError::Memory(needs)) = Scene::build(nets, &scene_options, nothing) else {
-                panic!("a scene needs memory")
-            };
-            points = vec![P::EMPTY; needs.points.needed];
-            surfaces = vec![SurfaceSlot::EMPTY; needs.surfaces.needed];
-            offsets = vec![0; needs.offsets.needed];
-            references = vec![0; needs.references.needed];
-            let memory = SceneMemory {
-                points: &mut points,
-                surfaces: &mut surfaces,
-                offsets: &mut offsets,
-                references: &mut references,
-            };
-            Scene::build(nets, &scene_options, memory).unwrap().header()
-        });
+        let Built { header, points, surfaces, offsets, references } = Built::new(model, scale);
         let scene = Scene::new(header, &points, &surfaces, &offsets, &references);
         let mut scratch = subdivide_scratch();
         let mut view = scratch.view();
