@@ -237,8 +237,12 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                     None
                 }
             };
-            // A root on the border between two regions may be found in both.
-            let known = |at| roots.iter().any(|root| surface.same_root([root.u, root.v], at, limits.tolerance));
+            // A root on the border between two regions may be found in both. On a straight line that the ray follows all
+            // points are one root; those outside the interval must not stand for the ones within.
+            let known = |at| {
+                let mut counted = roots.iter().filter(|root| planes.t_in_interval(root.depth).is_some());
+                counted.any(|root| surface.same_root([root.u, root.v], at, limits.tolerance))
+            };
             if let Some(place) = done.filter(|place| !known(place.at)) {
                 let root = place.root(&surface.net, planes, limits, basis)?;
                 if !found(root, !pending.is_empty(), work)? {
