@@ -16,6 +16,7 @@ use crate::newton::{Local, Place, Root, noise};
 use crate::planes::{Planes, project_net};
 use crate::point::{Flat, Point};
 use crate::region::{Order, Region};
+use crate::roots::Seen;
 use crate::scalar::Scalar;
 use crate::surface::Surface;
 use heapless::vec::VecView;
@@ -237,18 +238,15 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                     None
                 }
             };
-            // A root on the border between two regions may be found in both. On a straight line that the ray follows all
-            // points are one root; those outside the interval must not stand for the ones within.
-            let known = |at| {
-                let mut counted = roots.iter().filter(|root| planes.t_in_interval(root.depth).is_some());
-                counted.any(|root| surface.same_root([root.u, root.v], at, limits.tolerance))
-            };
-            if let Some(place) = done.filter(|place| !known(place.at)) {
+            if let Some(place) = done {
                 let root = place.root(&surface.net, planes, limits, basis)?;
-                if !found(root, !pending.is_empty(), work)? {
-                    return Ok(());
+                let seen = Seen { surface, planes, whole, roots, allowed: allowed(tolerance, part.error) };
+                if !seen.holds(&root, limits, basis)? {
+                    if !found(root, !pending.is_empty(), work)? {
+                        return Ok(());
+                    }
+                    let _ = roots.push(root);
                 }
-                let _ = roots.push(root);
             }
             settled = false;
             match order.pop(pending) {
@@ -325,6 +323,12 @@ fn contract<P: Point>(
     }
 }
 
+/// How far the points of a settled region pass the ray at most, by the measure of [`Local::residual`].
+#[inline(always)]
+fn allowed<S: Scalar>(tolerance: S, error: S) -> S {
+    tolerance * S::TWO + error * S::from_u32(16) + noise()
+}
+
 /// Of a region whose points all pass the ray within the tolerance, the one of its corners and middle that the ray meets
 /// first, in its interval if one is; `None` if the ray passes all of them by, as it may at a phantom hit.
 ///
@@ -340,7 +344,7 @@ fn nearest<P: Point>(
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Option<Place<P::Scalar>>, Limit> {
     let [[u0, u1], [v0, v1]] = part.region.sides;
-    let allowed = tolerance * P::Scalar::TWO + part.error * P::Scalar::from_u32(16) + noise::<P::Scalar>();
+    let allowed = allowed(tolerance, part.error);
     // Whether it lies before the interval, its depth, and the place: in order of worth.
     let mut best: Option<(bool, P::Scalar, Place<P::Scalar>)> = None;
     for at in [part.region.middle(), [u0, v0], [u0, v1], [u1, v0], [u1, v1]] {

@@ -90,6 +90,7 @@ pub mod newton;
 
 pub mod clip;
 pub mod region;
+mod roots;
 
 pub mod clipper;
 
