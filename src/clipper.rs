@@ -310,7 +310,19 @@ fn contract<P: Point>(
         };
         let next = [u + du, v + dv];
         if strays <= limits.tolerance {
-            let held = region.nearest(next);
+            let (mut local, mut next, mut held) = (local, next, region.nearest(next));
+            if !local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance) {
+                // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
+                // far along the surface: one more from the border says on which side of it the root lies.
+                spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
+                let jet = bernstein::jet(surface.net.degrees(), whole, held, basis).map_err(|Full| Limit::Scratch)?;
+                local = Local::of(&jet);
+                let Some([du, dv]) = local.step() else {
+                    return Ok(Step::On);
+                };
+                next = [held[0] + du, held[1] + dv];
+                held = region.nearest(next);
+            }
             let on_it = local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance);
             return Ok(Step::Done(on_it.then_some(Place { at: held, local })));
         }
