@@ -315,7 +315,8 @@ fn contract<P: Point>(
                 // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
                 // far along the surface: one more from the border says on which side of it the root lies.
                 spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
-                let jet = bernstein::jet(surface.net.degrees(), whole, held, basis).map_err(|Full| Limit::Scratch)?;
+                let jet =
+                    bernstein::jet(surface.net.degrees(), whole, held, basis, |p| p).map_err(|Full| Limit::Scratch)?;
                 local = Local::of(&jet);
                 let Some([du, dv]) = local.step() else {
                     return Ok(Step::On);

@@ -41,8 +41,8 @@ impl<P: Point> Seen<'_, '_, P> {
         limits: &Limits<P::Scalar>,
         basis: &mut BasisView<'_, P::Scalar>,
     ) -> Result<bool, Limit> {
-        // Where the ray is all but tangent, a tolerance across is its root along the ray.
-        let near = limits.tolerance.sqrt();
+        // A tolerance across the ray is more along it, but two roots so near are not told apart by anyone.
+        let near = limits.tolerance * P::Scalar::from_u32(64);
         for old in self.roots {
             // On a straight line that the ray follows all points are one root; those outside the interval must not stand for
             // the ones within.
