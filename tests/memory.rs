@@ -3,13 +3,13 @@
 
 mod common;
 
-use common::{Kind, Prepared, direction, index, subdivide_scratch, with_nets};
+use common::{Built, Kind, Prepared, direction, index, subdivide_scratch, with_nets};
 use patchray::arena::Need;
 use patchray::bernstein::Basis;
 use patchray::grid::{GridError, GridMemory, GridNeeds, GridOptions, GridSlot, Grids};
 use patchray::limits::{Acceptance, GaveUp, Limit, Limits, Work};
 use patchray::method::Remembered;
-use patchray::method::{Scratch, newton, newton_coherent};
+use patchray::method::{ClipScratch, Scratch, clipping, newton, newton_coherent};
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::{Plain, Point, Weighted};
 use patchray::ray::{Hit, Interval};
@@ -422,4 +422,45 @@ fn slots_that_are_missing_are_named() {
     let view = &mut scratch.view();
     let answer = newton::closest(&scene, &patches, &tree, &ray, &interval, &limits, view, &mut work);
     assert_eq!(limit(&answer), Some(Limit::Scratch));
+}
+
+/// Clipping needs a scene and its scratch, no patches, trees or grids; and what another surface left in the scratch, of whatever
+/// degrees and whether it gave up there, changes no bit of answer or work.
+#[test]
+fn what_is_left_in_clipping_scratch_changes_nothing() {
+    fn check<P: Kind>(models: &[Model]) {
+        let built: Vec<_> = models.iter().map(|model| Built::<P>::new(model, 1.0)).collect();
+        let mut used = ClipScratch::<P, 16, 256, 64>::new();
+        let mut random = Random(103);
+        let mut hits = 0;
+        for _ in 0..2000 {
+            let built = &built[index(&mut random, models.len())];
+            let (eye, to) = (direction(&mut random, 0.0).map(|c| 5.0 * c), random.point(0.7));
+            let d: [f64; 3] = core::array::from_fn(|k| to[k] - eye[k]);
+            let scene = built.scene();
+            let ray = scene.ray(eye.map(P::Scalar::from_f64), d.map(P::Scalar::from_f64)).unwrap();
+            let (interval, mut limits) = (Interval::ahead(), Limits::default());
+            if index(&mut random, 3) == 0 {
+                limits.clip_steps = index(&mut random, 8) as u32;
+            }
+            let mut fresh = ClipScratch::<P, 16, 256, 64>::new();
+            let trace = |scratch: &mut ClipScratch<P, 16, 256, 64>| {
+                let (mut first, mut second) = (Work::default(), Work::default());
+                let mut list = heapless::Vec::<_, 32>::new();
+                let room = &mut scratch.view();
+                let closest = clipping::closest(&scene, &ray, &interval, &limits, room, &mut first);
+                let all = clipping::all_hits(&scene, &ray, &interval, &limits, room, &mut list, &mut second);
+                (closest, all, list, first, second)
+            };
+            let answer = trace(&mut used);
+            hits += u32::from(answer.0.is_ok_and(|hit| hit.is_some()));
+            assert_eq!(answer, trace(&mut fresh));
+        }
+        assert!(hits > 500, "{hits}");
+    }
+    let bumpy = |seed, degrees| Model::numbered(vec![bumpy(seed, degrees, [0.0; 3], 2.5, 0.6)]);
+    let models = [small_model(), bumpy(4, [15, 15]), bumpy(5, [1, 1]), bumpy(6, [2, 12]), teapot::model().unwrap()];
+    check::<Plain<f32>>(&models);
+    check::<Plain<f64>>(&models);
+    check::<Weighted<f64>>(&[sphere([0.0; 3], 1.0), bumpy(7, [4, 3])]);
 }
