@@ -6,7 +6,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use patchray::limits::Limits;
 use patchray::point::{Plain, Weighted};
 use patchray_host::lower::{FromFile, Lowered, Preparation, Stages};
-use patchray_host::method::{Newton, NewtonCoherent};
+use patchray_host::method::{Clipping, ClippingCoherent, Newton, NewtonCoherent, Views};
 use patchray_host::scanline::{MethodTracer, Tally, Tracer};
 use patchray_host::scene::model::Model;
 use patchray_host::scene::rays::RayLine;
@@ -43,22 +43,32 @@ fn trace(criterion: &mut Criterion, name: &str, tracer: &dyn Tracer, rays: &[Ray
     group.finish();
 }
 
-fn both_methods<P: FromFile>(criterion: &mut Criterion, name: &str, model: &Model) {
+fn all_methods<P: FromFile>(criterion: &mut Criterion, name: &str, model: &Model) {
     let lowered = Lowered::<P>::build(model, Stages::ALL, &Preparation::default()).expect("the model is valid");
+    let (views, limits) = (Views::of(&lowered), Limits::default());
+    let newton = MethodTracer::<Newton, _>::new(views, limits);
+    let newton_coherent = MethodTracer::<NewtonCoherent, _>::new(views, limits);
+    let clipping = MethodTracer::<Clipping, _>::new(views, limits);
+    let clipping_coherent = MethodTracer::<ClippingCoherent, _>::new(views, limits);
+    let tracers: [(&str, &dyn Tracer); 4] = [
+        ("newton", &newton),
+        ("newton-coherent", &newton_coherent),
+        ("clipping", &clipping),
+        ("clipping-coherent", &clipping_coherent),
+    ];
     let rays = line(model);
-    let newton = MethodTracer::new(Newton::over(&lowered), Limits::default());
-    trace(criterion, &format!("{name}/newton"), &newton, &rays);
-    let coherent = MethodTracer::new(NewtonCoherent::over(&lowered), Limits::default());
-    trace(criterion, &format!("{name}/newton-coherent"), &coherent, &rays);
+    for (method, tracer) in tracers {
+        trace(criterion, &format!("{name}/{method}"), tracer, &rays);
+    }
 }
 
 fn benches(criterion: &mut Criterion) {
-    both_methods::<Plain<f32>>(criterion, "teapot/f32", &common::teapot());
-    both_methods::<Plain<f64>>(criterion, "teapot/f64", &common::teapot());
-    both_methods::<Weighted<f32>>(criterion, "rational-2x2/f32", &common::sphere());
-    both_methods::<Weighted<f64>>(criterion, "rational-2x2/f64", &common::sphere());
-    both_methods::<Plain<f64>>(criterion, "5x5/f64", &common::bumpy5());
-    both_methods::<Plain<f64>>(criterion, "15x15/f64", &common::bumpy15());
+    all_methods::<Plain<f32>>(criterion, "teapot/f32", &common::teapot());
+    all_methods::<Plain<f64>>(criterion, "teapot/f64", &common::teapot());
+    all_methods::<Weighted<f32>>(criterion, "rational-2x2/f32", &common::sphere());
+    all_methods::<Weighted<f64>>(criterion, "rational-2x2/f64", &common::sphere());
+    all_methods::<Plain<f64>>(criterion, "5x5/f64", &common::bumpy5());
+    all_methods::<Plain<f64>>(criterion, "15x15/f64", &common::bumpy15());
 }
 
 criterion_group!(group, benches);

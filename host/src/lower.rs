@@ -6,8 +6,6 @@
 use miette::Diagnostic;
 use patchray::bernstein::MAX_DEGREE;
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
-use patchray::method::Remembered;
-use patchray::method::Scratch;
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::{Plain, Point, Weighted};
 use patchray::scalar::Scalar;
@@ -123,7 +121,8 @@ impl Stages {
     pub fn of(method: Method) -> Self {
         match method {
             Method::Newton => Stages { patches: true, tree: true, grids: false },
-            Method::NewtonCoherent => Stages { patches: true, tree: false, grids: true },
+            Method::NewtonCoherent | Method::ClippingCoherent => Stages { patches: true, tree: false, grids: true },
+            Method::Clipping => Stages { patches: false, tree: false, grids: false },
         }
     }
 }
@@ -382,16 +381,6 @@ impl<P: Point> Lowered<P> {
             bytes.add::<u32>(Kind::GridReferences, self.grid_references.len());
         }
         bytes
-    }
-
-    /// Bytes of coherence memory for one thread, where a method has any.
-    pub fn coherence_bytes(&self) -> u64 {
-        (self.surfaces.len() * size_of::<Remembered<P::Scalar>>()) as u64
-    }
-
-    /// Bytes of scratch for one thread.
-    pub fn scratch_bytes(&self) -> u64 {
-        size_of::<Scratch<P, ORDER, NET>>() as u64
     }
 
     /// Bytes of scratch that subdivision takes while the scene is built.

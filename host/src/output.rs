@@ -38,6 +38,11 @@ pub enum OutputError {
 }
 
 impl OutputError {
+    /// The error for a write to `path` that failed because of `reason`.
+    pub fn failed(path: &Path, reason: io::Error) -> Self {
+        Self::Failed { path: path.display().to_string(), reason }
+    }
+
     /// Whether whoever read the output has gone away, as `head` does.
     pub fn is_broken_pipe(&self) -> bool {
         matches!(self, Self::Failed { reason, .. } if reason.kind() == io::ErrorKind::BrokenPipe)

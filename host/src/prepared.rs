@@ -1,13 +1,13 @@
 //! A lowered scene of whichever point type it needs: plain or weighted, `f32` or `f64`.
 
-use patchray::point::{Plain, Weighted};
+use patchray::point::{Plain, Point, Weighted};
 
 use crate::lower::{LowerError, Lowered, Stages, unfit};
 use crate::memory::Bytes;
-use crate::method::{Newton, NewtonCoherent};
-use crate::scanline::{MethodTracer, Tracer};
+use crate::method::{AllHits, AnyHit, Clipping, ClippingCoherent, Method, Newton, NewtonCoherent, Views};
+use crate::scanline::{Found, MethodTracer, Told, Tracer};
 use crate::scene::model::Model;
-use crate::scene::trace::{Method, Precision};
+use crate::scene::trace::{Method as Which, Precision};
 use crate::settings::Settings;
 
 /// A lowered scene. A model without a rational surface has plain points; one rational surface makes all of them weighted.
@@ -50,6 +50,15 @@ pub fn unfit_for(model: &Model, precision: Precision) -> Vec<(usize, String)> {
     }
 }
 
+/// The tracer of the method `M` under the limits of `settings`.
+fn tracer<'m, M, P>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer<Told<M, P>> + 'm>
+where
+    M: Method<P> + 'm,
+    P: Point,
+{
+    Box::new(MethodTracer::<M, P>::new(views, settings.limits()))
+}
+
 impl Prepared {
     /// Lowers `model` in the precision of `settings`, and builds `stages`.
     ///
@@ -64,11 +73,41 @@ impl Prepared {
         })
     }
 
-    /// The tracer of the method, and under the limits, of `settings`. The method's stages have to have been built.
+    /// The tracer of the method, and under the limits, of `settings`: of the closest hits. The method's stages have to have
+    /// been built.
     pub fn tracer(&self, settings: &Settings) -> Box<dyn Tracer + '_> {
-        any!(self, lowered => match settings.method {
-            Method::Newton => Box::new(MethodTracer::new(Newton::over(lowered), settings.limits())),
-            Method::NewtonCoherent => Box::new(MethodTracer::new(NewtonCoherent::over(lowered), settings.limits())),
+        any!(self, lowered => {
+            let views = Views::of(lowered);
+            match settings.method {
+                Which::Newton => tracer::<Newton, _>(views, settings),
+                Which::NewtonCoherent => tracer::<NewtonCoherent, _>(views, settings),
+                Which::Clipping => tracer::<Clipping, _>(views, settings),
+                Which::ClippingCoherent => tracer::<ClippingCoherent, _>(views, settings),
+            }
+        })
+    }
+
+    /// The same of all hits; `None` if the method looks for no more than the closest.
+    pub fn tracer_of_all(&self, settings: &Settings) -> Option<Box<dyn Tracer<Vec<Found>> + '_>> {
+        any!(self, lowered => {
+            let views = Views::of(lowered);
+            match settings.method {
+                Which::Newton => Some(tracer::<AllHits<Newton>, _>(views, settings)),
+                Which::Clipping => Some(tracer::<AllHits<Clipping>, _>(views, settings)),
+                Which::NewtonCoherent | Which::ClippingCoherent => None,
+            }
+        })
+    }
+
+    /// The same of any hits, the first that are found; `None` if the method looks for no other than the closest.
+    pub fn tracer_of_any(&self, settings: &Settings) -> Option<Box<dyn Tracer + '_>> {
+        any!(self, lowered => {
+            let views = Views::of(lowered);
+            match settings.method {
+                Which::Newton => Some(tracer::<AnyHit<Newton>, _>(views, settings)),
+                Which::Clipping => Some(tracer::<AnyHit<Clipping>, _>(views, settings)),
+                Which::NewtonCoherent | Which::ClippingCoherent => None,
+            }
         })
     }
 
@@ -85,19 +124,6 @@ impl Prepared {
     /// The bytes that `stages` take of what was built, by kind.
     pub fn bytes(&self, stages: Stages) -> Bytes {
         any!(self, lowered => lowered.bytes(stages))
-    }
-
-    /// Bytes of coherence memory that one thread needs for `method`.
-    pub fn coherence_bytes(&self, method: Method) -> u64 {
-        match method {
-            Method::Newton => 0,
-            Method::NewtonCoherent => any!(self, lowered => lowered.coherence_bytes()),
-        }
-    }
-
-    /// Bytes of scratch that one thread needs.
-    pub fn scratch_bytes(&self) -> u64 {
-        any!(self, lowered => lowered.scratch_bytes())
     }
 
     /// Bytes of scratch that building the scene needs.

@@ -5,19 +5,20 @@
 //! method behind one call per line; within a line all is monomorphic.
 
 use std::collections::BTreeMap;
+use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use patchray::bernstein::Basis;
 use patchray::limits::{Limits, Work};
 use patchray::method::Remembered;
-use patchray::method::Scratch;
+use patchray::point::Point;
 use patchray::ray::{Hit, Interval, RayError};
-use patchray::scalar::Scalar as _;
+use patchray::scalar::Scalar;
 use rayon::prelude::*;
 
-use crate::lower::{NET, ORDER};
-use crate::method::{Answer, Method, Scalar};
+use crate::lower::ORDER;
+use crate::method::{Answer, Coherence, Hits, Method, Stopped, Task, Views};
 use crate::scene::rays::RayLine;
 
 /// A hit in `f64`, whatever it was computed in; exact.
@@ -37,19 +38,19 @@ pub struct Found {
     pub grazing: bool,
 }
 
-/// What became of a ray.
+/// What became of a ray. `H` is what it was asked for: one hit, the closest or any, or a list of all, which is not empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
-    /// The closest hit.
-    Hit(Found),
+pub enum Outcome<H = Found> {
+    /// What was asked for.
+    Hit(H),
     /// No hit.
     Miss,
     /// Out of a budget.
     GaveUp {
         /// The name of the budget.
         limit: &'static str,
-        /// The closest hit so far, which is not an answer.
-        best: Option<Found>,
+        /// The closest hit, or the hits, found by then: not an answer.
+        best: Option<H>,
     },
     /// The kernel refuses such a ray in this scene.
     Refused(RayError),
@@ -62,7 +63,7 @@ pub enum Outcome {
 pub struct Tally {
     /// Rays, whatever became of them.
     pub rays: u64,
-    /// Rays that hit.
+    /// Rays that hit, whether once or more often.
     pub hits: u64,
     /// Rays that were refused, or were not valid.
     pub invalid: u64,
@@ -70,7 +71,7 @@ pub struct Tally {
     pub gave_up: BTreeMap<&'static str, u64>,
     /// The kernel's counters, in the order of [`Work::NAMES`].
     pub work: [u64; Work::COUNT],
-    /// Seconds for making rays and finding their closest hits, summed over threads. Measured around whole lines; the
+    /// Seconds for making rays and answering them, summed over threads. Measured around whole lines; the
     /// conversion of numbers and the normals are outside.
     pub seconds: f64,
 }
@@ -101,17 +102,29 @@ impl Tally {
     }
 }
 
-/// What one thread needs to trace lines with one method.
-pub trait Lane: Send {
+/// Bytes that each thread needs beside the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LaneBytes {
+    /// Coherence memory.
+    pub coherence: u64,
+    /// Scratch, for surfaces of any degrees.
+    pub scratch: u64,
+}
+
+/// What one thread needs to trace lines with one method. `H` is what rays are asked for, as in [`Outcome`].
+pub trait Lane<H = Found>: Send {
     /// Traces `rays` one after another, as the beginning of a scan line, or as its continuation if `continues`. Outcomes are
     /// appended, one per ray; sums are added to `tally`.
-    fn trace(&mut self, rays: &[RayLine], continues: bool, outcomes: &mut Vec<Outcome>, tally: &mut Tally);
+    fn trace(&mut self, rays: &[RayLine], continues: bool, outcomes: &mut Vec<Outcome<H>>, tally: &mut Tally);
 }
 
 /// A scene ready to be traced with one method.
-pub trait Tracer: Send + Sync {
+pub trait Tracer<H = Found>: Send + Sync {
     /// A lane over it. Lanes of one tracer are alike.
-    fn lane(&self) -> Box<dyn Lane + '_>;
+    fn lane(&self) -> Box<dyn Lane<H> + '_>;
+
+    /// What a lane takes.
+    fn lane_bytes(&self) -> LaneBytes;
 
     /// Whether a scan line has to stay with one lane.
     fn is_coherent(&self) -> bool;
@@ -122,30 +135,45 @@ pub trait Tracer: Send + Sync {
 
 /// The tracer of a method.
 #[derive(Clone, Copy, Debug)]
-pub struct MethodTracer<M: Method> {
-    method: M,
-    limits: Limits<Scalar<M>>,
+pub struct MethodTracer<'m, M, P: Point> {
+    views: Views<'m, P>,
+    limits: Limits<P::Scalar>,
+    method: PhantomData<M>,
 }
 
-impl<M: Method> MethodTracer<M> {
-    /// The tracer of `method`, such as `Newton::over(&lowered)`, under `limits`.
-    pub fn new(method: M, limits: Limits<Scalar<M>>) -> Self {
-        MethodTracer { method, limits }
+impl<'m, M: Method<P>, P: Point> MethodTracer<'m, M, P> {
+    /// The tracer of the method `M`, such as [`Newton`](crate::method::Newton), over `views` and under `limits`.
+    pub fn new(views: Views<'m, P>, limits: Limits<P::Scalar>) -> Self {
+        MethodTracer { views, limits, method: PhantomData }
+    }
+
+    /// Slots of coherence memory that a lane needs.
+    fn slots(&self) -> usize {
+        if M::COHERENT { self.views.scene.len() } else { 0 }
     }
 }
 
-impl<M: Method> Tracer for MethodTracer<M> {
-    fn lane(&self) -> Box<dyn Lane + '_> {
-        let slots = if M::COHERENT { self.method.scene().len() } else { 0 };
+/// What outcomes of the method `M` tell: [`Found`], or a list of them.
+pub type Told<M, P> = <<M as Method<P>>::Hits as Hits<<P as Point>::Scalar>>::Of<Found>;
+
+impl<M: Method<P>, P: Point> Tracer<Told<M, P>> for MethodTracer<'_, M, P> {
+    fn lane(&self) -> Box<dyn Lane<Told<M, P>> + '_> {
         Box::new(MethodLane {
             tracer: self,
-            scratch: Scratch::new(),
+            scratch: M::Scratch::default(),
             basis: Basis::new(),
-            memory: vec![Remembered::EMPTY; slots],
+            memory: vec![Remembered::EMPTY; self.slots()],
             line: 0,
             ready: Vec::new(),
             found: Vec::new(),
         })
+    }
+
+    fn lane_bytes(&self) -> LaneBytes {
+        LaneBytes {
+            coherence: (self.slots() * size_of::<Remembered<P::Scalar>>()) as u64,
+            scratch: size_of::<M::Scratch>() as u64,
+        }
     }
 
     fn is_coherent(&self) -> bool {
@@ -153,31 +181,34 @@ impl<M: Method> Tracer for MethodTracer<M> {
     }
 
     fn refusal(&self, ray: &RayLine) -> Option<RayError> {
-        let [origin, direction] = [ray.origin, ray.direction].map(|vector| vector.map(Scalar::<M>::from_f64));
-        self.method.scene().ray(origin, direction).err()
+        let [origin, direction] = [ray.origin, ray.direction].map(|vector| vector.map(P::Scalar::from_f64));
+        self.views.scene.ray(origin, direction).err()
     }
 }
 
 /// A ray in the method's precision; `None` where it is not to be traced.
 type Ready<S> = Option<([S; 3], [S; 3], Interval<S>)>;
 
-struct MethodLane<'t, M: Method> {
-    tracer: &'t MethodTracer<M>,
-    scratch: Scratch<M::Point, ORDER, NET>,
-    basis: Basis<Scalar<M>, ORDER>,
-    memory: Vec<Remembered<Scalar<M>>>,
+/// A ray's answer, or why the kernel refused it; `None` where it was not traced.
+type Traced<H> = Option<Result<Answer<H>, RayError>>;
+
+struct MethodLane<'t, M: Method<P>, P: Point> {
+    tracer: &'t MethodTracer<'t, M, P>,
+    scratch: M::Scratch,
+    basis: Basis<P::Scalar, ORDER>,
+    memory: Vec<Remembered<P::Scalar>>,
     /// The number of the scan line. It stamps the memory of this lane, and no other's.
     line: u32,
-    ready: Vec<Ready<Scalar<M>>>,
-    found: Vec<Option<Result<Answer<Scalar<M>>, RayError>>>,
+    ready: Vec<Ready<P::Scalar>>,
+    found: Vec<Traced<M::Hits>>,
 }
 
 /// Rays that are made ready and traced at a time: few enough for their numbers to stay in the nearest cache beside the
 /// scene's, enough for reading the clock around them not to count.
 const BLOCK: usize = 64;
 
-impl<M: Method> Lane for MethodLane<'_, M> {
-    fn trace(&mut self, rays: &[RayLine], continues: bool, outcomes: &mut Vec<Outcome>, tally: &mut Tally) {
+impl<M: Method<P>, P: Point> Lane<Told<M, P>> for MethodLane<'_, M, P> {
+    fn trace(&mut self, rays: &[RayLine], continues: bool, outcomes: &mut Vec<Outcome<Told<M, P>>>, tally: &mut Tally) {
         if !continues {
             self.begin_line();
         }
@@ -186,8 +217,8 @@ impl<M: Method> Lane for MethodLane<'_, M> {
             self.ready.clear();
             self.ready.extend(block.iter().map(ready));
             self.trace_ready(tally);
-            for place in 0..self.found.len() {
-                let outcome = self.outcome(self.found[place]);
+            for traced in self.found.drain(..) {
+                let outcome = outcome(&self.tracer.views, &mut self.basis, traced);
                 match &outcome {
                     Outcome::Hit(_) => tally.hits += 1,
                     Outcome::Miss => {}
@@ -200,13 +231,11 @@ impl<M: Method> Lane for MethodLane<'_, M> {
     }
 }
 
-impl<M: Method> MethodLane<'_, M> {
+impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
     /// Traces what is ready, into `found`; this is what is timed.
     fn trace_ready(&mut self, tally: &mut Tally) {
         self.found.clear();
-        let MethodTracer { method, limits } = self.tracer;
-        let scene = method.scene();
-        let mut scratch = self.scratch.view();
+        let MethodTracer { views, limits, .. } = self.tracer;
         // A ray's counters are summed after the next ray: read at once, they would wait for the kernel's last stores.
         let mut works = [Work::default(); 2];
         let mut sum = |work: &Work| {
@@ -219,9 +248,9 @@ impl<M: Method> MethodLane<'_, M> {
             let [even, odd] = &mut works;
             let (work, previous) = if number % 2 == 0 { (even, odd) } else { (odd, even) };
             let answer = ready.as_ref().map(|(origin, direction, interval)| {
-                let ray = scene.ray(*origin, *direction)?;
-                let memory = &mut self.memory;
-                Ok(method.closest(memory, self.line, &ray, interval, limits, &mut scratch, work))
+                let ray = &views.scene.ray(*origin, *direction)?;
+                let coherence = Coherence { memory: &mut self.memory, line: self.line };
+                Ok(M::answer(views, coherence, &Task { ray, interval, limits }, &mut self.scratch, work))
             });
             sum(previous);
             *previous = Work::default();
@@ -239,67 +268,71 @@ impl<M: Method> MethodLane<'_, M> {
         }
         self.line += 1;
     }
+}
 
-    fn outcome(&mut self, answer: Option<Result<Answer<Scalar<M>>, RayError>>) -> Outcome {
-        match answer {
-            None => Outcome::Invalid,
-            Some(Err(error)) => Outcome::Refused(error),
-            Some(Ok(Ok(None))) => Outcome::Miss,
-            Some(Ok(Ok(Some(hit)))) => Outcome::Hit(self.found(&hit)),
-            Some(Ok(Err(gave_up))) => {
-                Outcome::GaveUp { limit: gave_up.limit.name(), best: gave_up.best.map(|hit| self.found(&hit)) }
-            }
-        }
+/// What became of a ray, in `f64` and with normals.
+fn outcome<H: Hits<P::Scalar>, P: Point>(
+    views: &Views<'_, P>,
+    basis: &mut Basis<P::Scalar, ORDER>,
+    traced: Traced<H>,
+) -> Outcome<H::Of<Found>> {
+    let mut told = |hits: H| hits.each(|hit| found(views, basis, hit));
+    match traced {
+        None => Outcome::Invalid,
+        Some(Err(error)) => Outcome::Refused(error),
+        Some(Ok(Ok(None))) => Outcome::Miss,
+        Some(Ok(Ok(Some(hits)))) => Outcome::Hit(told(hits)),
+        Some(Ok(Err(Stopped { limit, best }))) => Outcome::GaveUp { limit: limit.name(), best: best.map(told) },
     }
+}
 
-    fn found(&mut self, hit: &Hit<Scalar<M>>) -> Found {
-        let normal = self.tracer.method.scene().normal(hit, &mut self.basis.view());
-        // A surface without a normal there has the zero vector. The basis is large enough for every degree.
-        let normal = normal.ok().map(|normal| normal.map(|c| c.to_f64())).filter(|normal| *normal != [0.0; 3]);
-        Found {
-            t: hit.t.to_f64(),
-            u: hit.u.to_f64(),
-            v: hit.v.to_f64(),
-            surface: hit.surface as usize,
-            normal,
-            grazing: hit.grazing,
-        }
+fn found<P: Point>(views: &Views<'_, P>, basis: &mut Basis<P::Scalar, ORDER>, hit: &Hit<P::Scalar>) -> Found {
+    let normal = views.scene.normal(hit, &mut basis.view());
+    // A surface without a normal there has the zero vector. The basis is large enough for every degree.
+    let normal = normal.ok().map(|normal| normal.map(|c| c.to_f64())).filter(|normal| *normal != [0.0; 3]);
+    Found {
+        t: hit.t.to_f64(),
+        u: hit.u.to_f64(),
+        v: hit.v.to_f64(),
+        surface: hit.surface as usize,
+        normal,
+        grazing: hit.grazing,
     }
 }
 
 /// The ray in the method's precision. Rounding keeps the order of `t_min` and `t_max`.
-fn ready<S: patchray::scalar::Scalar>(ray: &RayLine) -> Ready<S> {
+fn ready<S: Scalar>(ray: &RayLine) -> Ready<S> {
     let [origin, direction] = [ray.origin, ray.direction].map(|vector| vector.map(S::from_f64));
     let interval = Interval::new(S::from_f64(ray.t_min), S::from_f64(ray.t_max));
     interval.filter(|_| ray.valid).map(|interval| (origin, direction, interval))
 }
 
 /// Lanes that threads borrow: as many are made as are in use at once.
-pub struct Lanes<'t> {
-    tracer: &'t dyn Tracer,
-    idle: Mutex<Vec<Box<dyn Lane + 't>>>,
+pub struct Lanes<'t, H = Found> {
+    tracer: &'t dyn Tracer<H>,
+    idle: Mutex<Vec<Box<dyn Lane<H> + 't>>>,
 }
 
-impl<'t> Lanes<'t> {
+impl<'t, H> Lanes<'t, H> {
     /// No lanes yet.
-    pub fn new(tracer: &'t dyn Tracer) -> Self {
+    pub fn new(tracer: &'t dyn Tracer<H>) -> Self {
         Lanes { tracer, idle: Mutex::new(Vec::new()) }
     }
 
     /// Runs `work` with a lane.
-    pub fn with<R>(&self, work: impl FnOnce(&mut dyn Lane) -> R) -> R {
+    pub fn with<R>(&self, work: impl FnOnce(&mut dyn Lane<H>) -> R) -> R {
         let mut lane = self.take();
         let result = work(lane.as_mut());
         self.give(lane);
         result
     }
 
-    fn take(&self) -> Box<dyn Lane + 't> {
+    fn take(&self) -> Box<dyn Lane<H> + 't> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         idle.unwrap_or_else(|| self.tracer.lane())
     }
 
-    fn give(&self, lane: Box<dyn Lane + 't>) {
+    fn give(&self, lane: Box<dyn Lane<H> + 't>) {
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(lane);
     }
 }
@@ -309,16 +342,16 @@ impl<'t> Lanes<'t> {
 const SHARE: usize = 1024;
 
 /// Traces a long row of rays block by block. A scan line is a run of rays with one number; it may go on from block to block.
-pub struct Batch<'t> {
-    lanes: Lanes<'t>,
+pub struct Batch<'t, H = Found> {
+    lanes: Lanes<'t, H>,
     /// The lane of the line that the last block ended with, and the number of that line.
-    open: Option<(Box<dyn Lane + 't>, u64)>,
+    open: Option<(Box<dyn Lane<H> + 't>, u64)>,
     tally: Tally,
 }
 
-impl<'t> Batch<'t> {
+impl<'t, H: Send> Batch<'t, H> {
     /// Nothing traced yet.
-    pub fn new(tracer: &'t dyn Tracer) -> Self {
+    pub fn new(tracer: &'t dyn Tracer<H>) -> Self {
         Batch { lanes: Lanes::new(tracer), open: None, tally: Tally::default() }
     }
 
@@ -329,7 +362,7 @@ impl<'t> Batch<'t> {
 
     /// Traces the next rays, on rayon's current threads; an outcome per ray, in order. How rays are cut into blocks changes
     /// neither outcomes nor counters.
-    pub fn trace(&mut self, rays: &[RayLine]) -> Vec<Outcome> {
+    pub fn trace(&mut self, rays: &[RayLine]) -> Vec<Outcome<H>> {
         let coherent = self.lanes.tracer.is_coherent();
         let lines = rays.chunk_by(|a, b| a.scan_line == b.scan_line);
         let jobs: Vec<&[RayLine]> =
@@ -347,7 +380,7 @@ impl<'t> Batch<'t> {
         let open = Mutex::new(open);
         let still_open = Mutex::new(None);
         let lanes = &self.lanes;
-        let done: Vec<(Vec<Outcome>, Tally)> = jobs
+        let done: Vec<(Vec<Outcome<H>>, Tally)> = jobs
             .par_iter()
             .enumerate()
             .map(|(number, line)| {

@@ -10,6 +10,7 @@ use patchray::subdivide::Subdivision;
 use serde::Serialize;
 
 use crate::lower::Preparation;
+use crate::method::PENDING;
 use crate::scene::appearance::MAX_SIDE;
 use crate::scene::error::{InputError, OnInvalid};
 use crate::scene::nearest::did_you_mean;
@@ -19,7 +20,7 @@ use crate::scene::trace::{Acceptance, MAX_STARTS, MAX_THREADS, Method, Precision
 /// The flags that every verb takes, with the same meaning.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Flags {
-    /// The method that finds hits [default: newton-coherent]
+    /// The method that finds hits [default: clipping]
     #[arg(long, value_enum, help_heading = "Tracing")]
     pub method: Option<Method>,
     /// The precision in which hits are computed [default: f64]
@@ -35,14 +36,17 @@ pub struct Flags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_STARTS)),
         help_heading = "Tracing")]
     pub newton_starts: Option<u32>,
+    /// The share of an interval that a clip has to remove, else the interval is bisected [default: 0.2]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true, help_heading = "Tracing")]
+    pub clip_threshold: Option<f64>,
     /// How far a patch may be from flat, as a share of the scene's diagonal
     #[arg(long, value_name = "SHARE", value_parser = positive, allow_hyphen_values = true, help_heading = "Tracing")]
     pub flatness: Option<f64>,
     /// Voxels of a grid per patch in it
     #[arg(long, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true, help_heading = "Tracing")]
     pub grid_density: Option<f64>,
-    /// A bound by name; per ray: surfaces, nodes, patches, voxels, newton-steps; in preparation: depth,
-    /// patches-per-surface, arena-bytes
+    /// A bound by name; per ray: surfaces, nodes, patches, voxels, newton-steps, clip-steps, bisections, pending-domains;
+    /// in preparation: depth, patches-per-surface, arena-bytes
     #[arg(long = "limit", value_name = "NAME=N", value_parser = named_limit, help_heading = "Tracing")]
     pub limits: Vec<(Name, u64)>,
     /// Threads, 1 to 1024 [default: one per core]
@@ -88,6 +92,13 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number > 0.0 && number < 1.0 => Ok(number),
+        _ => Err("write a number above 0 and below 1".to_owned()),
+    }
+}
+
 fn size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse::<u32>().ok().filter(|side| (1..=MAX_SIDE).contains(side));
     let sides = text.split_once(['x', 'X']).and_then(|(width, height)| Some([side(width)?, side(height)?]));
@@ -107,6 +118,12 @@ pub enum Name {
     Voxels,
     /// [`Limits::newton_steps`].
     NewtonSteps,
+    /// [`Limits::clip_steps`].
+    ClipSteps,
+    /// [`Limits::bisections`].
+    Bisections,
+    /// [`Limits::pending_domains`].
+    PendingDomains,
     /// [`Subdivision::depth`].
     Depth,
     /// [`Subdivision::patches_per_surface`].
@@ -116,12 +133,15 @@ pub enum Name {
 }
 
 /// Every bound with the name that it has on the command line, in `[trace.limits]` and in STATS.
-const NAMES: [(&str, Name); 8] = [
+const NAMES: [(&str, Name); 11] = [
     ("surfaces", Name::Surfaces),
     ("nodes", Name::Nodes),
     ("patches", Name::Patches),
     ("voxels", Name::Voxels),
     ("newton-steps", Name::NewtonSteps),
+    ("clip-steps", Name::ClipSteps),
+    ("bisections", Name::Bisections),
+    ("pending-domains", Name::PendingDomains),
     ("depth", Name::Depth),
     ("patches-per-surface", Name::PatchesPerSurface),
     ("arena-bytes", Name::ArenaBytes),
@@ -140,11 +160,12 @@ fn all_names() -> String {
     NAMES.map(|(name, _)| name).join(", ")
 }
 
-/// Refuses a value that is more than the bound's type can hold, or than the kernel allows.
+/// Refuses a value that is more than the bound's type can hold, than the kernel allows, or than there is room for.
 fn in_range(name: Name, value: u64) -> Result<u64, String> {
     let most = match name {
         Name::ArenaBytes => u64::MAX,
         Name::Depth => u64::from(MAX_LEVEL),
+        Name::PendingDomains => PENDING as u64,
         _ => u64::from(u32::MAX),
     };
     if value <= most { Ok(value) } else { Err(format!("the most is {most}")) }
@@ -171,6 +192,12 @@ pub struct Bounds {
     pub voxels: u32,
     /// Evaluations of a surface, per ray.
     pub newton_steps: u32,
+    /// Clips of an interval, per ray.
+    pub clip_steps: u32,
+    /// Bisections of an interval, per ray.
+    pub bisections: u32,
+    /// Domains that wait to be clipped at one time; at most [`PENDING`].
+    pub pending_domains: u32,
     /// How often a surface may be halved in each direction.
     pub depth: u32,
     /// The most patches of one surface.
@@ -190,6 +217,9 @@ impl Default for Bounds {
             patches: limits.patches,
             voxels: limits.voxels,
             newton_steps: limits.newton_steps,
+            clip_steps: limits.clip_steps,
+            bisections: limits.bisections,
+            pending_domains: limits.pending_domains.min(PENDING as u32),
             depth: subdivision.depth,
             patches_per_surface: subdivision.patches_per_surface,
             arena_bytes: None,
@@ -207,6 +237,9 @@ impl Bounds {
             Name::Patches => self.patches = count,
             Name::Voxels => self.voxels = count,
             Name::NewtonSteps => self.newton_steps = count,
+            Name::ClipSteps => self.clip_steps = count,
+            Name::Bisections => self.bisections = count,
+            Name::PendingDomains => self.pending_domains = count,
             Name::Depth => self.depth = count,
             Name::PatchesPerSurface => self.patches_per_surface = count,
             Name::ArenaBytes => self.arena_bytes = Some(value),
@@ -227,6 +260,8 @@ pub struct Settings {
     pub newton_iterations: u32,
     /// Newton starts per patch.
     pub newton_starts: u32,
+    /// The share of an interval that a clip has to remove, else the interval is bisected.
+    pub clip_threshold: f64,
     /// How far a patch may be from flat, as a share of the scene's diagonal.
     pub flatness: f64,
     /// Voxels of a grid per patch in it.
@@ -249,6 +284,7 @@ impl Default for Settings {
             acceptance: Acceptance::default(),
             newton_iterations: limits.newton_iterations,
             newton_starts: limits.newton_starts,
+            clip_threshold: limits.clip_threshold,
             flatness: preparation.subdivision.flatness,
             grid_density: preparation.grid.density,
             threads: u32::try_from(cores).unwrap_or(1).min(MAX_THREADS),
@@ -274,6 +310,7 @@ impl Settings {
         set(&mut settings.acceptance, trace.acceptance);
         set(&mut settings.newton_iterations, trace.newton_iterations);
         set(&mut settings.newton_starts, trace.newton_starts);
+        set(&mut settings.clip_threshold, trace.clip_threshold);
         set(&mut settings.flatness, trace.flatness);
         set(&mut settings.grid_density, trace.grid_density);
         set(&mut settings.threads, trace.threads);
@@ -293,6 +330,7 @@ impl Settings {
         set(&mut self.acceptance, flags.acceptance);
         set(&mut self.newton_iterations, flags.newton_iterations);
         set(&mut self.newton_starts, flags.newton_starts);
+        set(&mut self.clip_threshold, flags.clip_threshold);
         set(&mut self.flatness, flags.flatness);
         set(&mut self.grid_density, flags.grid_density);
         set(&mut self.threads, flags.threads);
@@ -316,6 +354,10 @@ impl Settings {
             patches: self.limits.patches,
             voxels: self.limits.voxels,
             newton_steps: self.limits.newton_steps,
+            clip_threshold: S::from_f64(self.clip_threshold),
+            clip_steps: self.limits.clip_steps,
+            bisections: self.limits.bisections,
+            pending_domains: self.limits.pending_domains,
             ..Limits::default()
         }
     }
@@ -361,12 +403,17 @@ mod tests {
         assert!(named_limit("patches=-1").expect_err("negative").contains("whole number"));
         assert!(named_limit("patches=4294967296").expect_err("too large").contains("4294967295"));
         assert!(named_limit("depth=15").expect_err("too deep").contains("14"));
+        assert!(named_limit("pending-domains=65").expect_err("no room").contains("64"));
         assert_eq!(size("640x480"), Ok([640, 480]));
         for text in ["640", "0x1", "1x40000", "x", "-1x2"] {
             assert!(size(text).is_err(), "{text}");
         }
         for text in ["0", "-1", "NaN", "inf", "flat"] {
             assert!(positive(text).is_err(), "{text}");
+        }
+        assert_eq!(share("0.05"), Ok(0.05));
+        for text in ["0", "1", "-0.2", "NaN", "20%"] {
+            assert!(share(text).is_err(), "{text}");
         }
     }
 
@@ -376,9 +423,11 @@ mod tests {
         let source = SourceText::new("s.toml", text);
         let mut trace = TraceSettings { newton_starts: Some(2), method: Some(Method::Newton), ..Default::default() };
         let flags = Flags { newton_starts: Some(1), limits: vec![(Name::Voxels, 5)], ..Default::default() };
+        trace.clip_threshold = Some(0.3);
         let settings = Settings::of_scene(&flags, &trace, &source).expect("valid");
         assert_eq!((settings.newton_starts, settings.method, settings.limits.voxels), (1, Method::Newton, 5));
-        assert_eq!(settings.limits::<f32>().newton_starts, 1);
+        let limits = settings.limits::<f32>();
+        assert_eq!((limits.newton_starts, limits.clip_threshold), (1, 0.3));
 
         let limit =
             |name: &str, value| crate::scene::trace::LimitSetting { name: name.to_owned(), value, span: 18..23 };

@@ -8,12 +8,25 @@ use serde::Serialize;
 use crate::lower::Stages;
 use crate::memory::Bytes;
 use crate::prepared::Prepared;
-use crate::scanline::Tally;
+use crate::scanline::{LaneBytes, Tally};
 use crate::scene::trace::{Method, Precision};
 use crate::settings::Settings;
 
 /// The number of this format; it changes when a field changes its meaning or goes away, not when one is added.
 pub const SCHEMA: u32 = 1;
+
+/// What rays are asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Asked {
+    /// The closest hit.
+    #[default]
+    Closest,
+    /// All hits.
+    All,
+    /// The first hit that is found.
+    Any,
+}
 
 /// What a run did. Counters are sums over all rays and do not depend on the number of threads.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -34,13 +47,15 @@ pub struct Stats {
     pub method: Method,
     /// The precision.
     pub precision: Precision,
+    /// What rays were asked for.
+    pub asked: Asked,
     /// The number of threads.
     pub threads: u32,
     /// All that was in effect: method and parameters, and `limits` by name.
     pub settings: Settings,
     /// Surfaces in the scene.
     pub surfaces: u64,
-    /// Patches of all surfaces.
+    /// Patches of all surfaces; 0 for a method that needs none.
     pub patches: u64,
     /// Rays, those that are not valid included.
     pub rays: u64,
@@ -52,13 +67,12 @@ pub struct Stats {
     pub gave_up_by_limit: BTreeMap<&'static str, u64>,
     /// Rays that are not valid.
     pub invalid_rays: u64,
-    /// The kernel's counters by name (see [`Work`]), and 0 for those of methods that are not in use: `clip_steps`,
-    /// `bisections`.
+    /// The kernel's counters by name (see [`Work`]); 0 for those of methods that are not in use.
     #[serde(flatten)]
     pub work: BTreeMap<&'static str, u64>,
     /// Wall-clock seconds from the model to the scene ready to trace.
     pub prepare_seconds: f64,
-    /// Seconds for making rays and finding their closest hits, summed over threads.
+    /// Seconds for making rays and answering them, summed over threads.
     pub intersect_seconds: f64,
     /// Bytes lent to the kernel for the scene, all threads sharing them.
     pub arena_bytes: u64,
@@ -71,11 +85,17 @@ pub struct Stats {
 }
 
 impl Stats {
-    /// The statistics of tracing `prepared` under `settings`, with `tally` the sums over rays.
-    pub fn new(scene: String, settings: &Settings, prepared: &Prepared, prepare_seconds: f64, tally: &Tally) -> Self {
+    /// The statistics of tracing `prepared` under `settings`, with `lane` what each thread took and `tally` the sums over
+    /// rays, which were asked for their closest hits.
+    pub fn new(
+        scene: String,
+        settings: &Settings,
+        prepared: &Prepared,
+        prepare_seconds: f64,
+        lane: LaneBytes,
+        tally: &Tally,
+    ) -> Self {
         let bytes = prepared.bytes(Stages::of(settings.method));
-        let mut work = BTreeMap::from([("clip_steps", 0), ("bisections", 0)]);
-        work.extend(Work::NAMES.into_iter().zip(tally.work));
         Stats {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
@@ -84,6 +104,7 @@ impl Stats {
             size: None,
             method: settings.method,
             precision: settings.precision,
+            asked: Asked::Closest,
             threads: settings.threads,
             settings: *settings,
             surfaces: prepared.surfaces(),
@@ -93,13 +114,13 @@ impl Stats {
             gave_up: tally.gave_up_in_all(),
             gave_up_by_limit: tally.gave_up.clone(),
             invalid_rays: tally.invalid,
-            work,
+            work: Work::NAMES.into_iter().zip(tally.work).collect(),
             prepare_seconds,
             intersect_seconds: tally.seconds,
             arena_bytes: bytes.total(),
             arena_bytes_by_kind: bytes,
-            coherence_bytes_per_thread: prepared.coherence_bytes(settings.method),
-            scratch_bytes_per_thread: prepared.scratch_bytes(),
+            coherence_bytes_per_thread: lane.coherence,
+            scratch_bytes_per_thread: lane.scratch,
         }
     }
 }

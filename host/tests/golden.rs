@@ -1,10 +1,11 @@
 //! The common view drawn by every method and precision, against the picture in `fixtures/recorded`.
 //!
 //! That picture was recorded by the reference, and only by it, from the project's root:
-//! `cargo run --release -- render fixtures/scenes/teapot-common.toml --method newton-coherent --precision f64 -o
+//! `cargo run --release -- render fixtures/scenes/teapot-common.toml --method clipping --precision f64 -o
 //! fixtures/recorded/teapot-common.png`. Where a test fails it leaves the picture and a map of the differences under
 //! `target/golden`.
 
+use clap::ValueEnum;
 use image::RgbImage;
 use indicatif::ProgressBar;
 use patchray_host::cmd::render::draw;
@@ -31,7 +32,7 @@ fn every_method_draws_the_recorded_picture() {
     let scene = teapot::common_scene().expect("the built-in scene is valid");
     let description = &scene.description;
     let view = description.camera.view(description.image.size);
-    for method in [Method::Newton, Method::NewtonCoherent] {
+    for &method in Method::value_variants() {
         for precision in [Precision::F64, Precision::F32] {
             let settings = Settings { method, precision, ..Settings::default() };
             let prepared = Prepared::build(&scene.model, Stages::of(method), &settings).expect("the teapot is valid");

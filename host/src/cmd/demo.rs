@@ -160,7 +160,8 @@ fn compare(
         for ((outcome, truth), direction) in drawn.outcomes.iter().zip(truths).zip(directions) {
             agreement.add(outcome, truth, direction, diagonal, &allowance);
         }
-        let mut stats = Stats::new("teapot".to_owned(), settings, prepared, *prepare_seconds, &drawn.tally);
+        let (scene, lane) = ("teapot".to_owned(), prepared.tracer(settings).lane_bytes());
+        let mut stats = Stats::new(scene, settings, prepared, *prepare_seconds, lane, &drawn.tally);
         stats.size = Some(view.size);
         let ns_per_ray = stats.intersect_seconds / stats.rays.max(1) as f64 * 1e9;
         let times_oracle = oracle.seconds / stats.intersect_seconds.max(f64::MIN_POSITIVE);
@@ -182,9 +183,12 @@ fn default_picture() -> Result<PathBuf, OutputError> {
 
 /// The settings of every run: those of the default method and precision come last.
 fn combinations(flags: &Flags, settings: &Settings) -> Vec<Settings> {
+    let mut methods = Method::value_variants().to_vec();
+    // A stable sort, so that the others keep their order.
+    methods.sort_by_key(|&method| method == Method::default());
     let mut all = Vec::new();
     for &precision in Precision::value_variants() {
-        for &method in Method::value_variants() {
+        for &method in &methods {
             let wanted =
                 flags.method.is_none_or(|only| only == method) && flags.precision.is_none_or(|only| only == precision);
             if wanted {
@@ -231,7 +235,7 @@ impl Report {
             let _ = writeln!(text, "{args}");
         };
         line(format_args!(
-            "{:<16}{:<10}{:>8}{:>9}{:>13}{:>8}{:>7}{:>8}{:>9}{:>10}{:>10}",
+            "{:<18}{:<10}{:>8}{:>9}{:>13}{:>8}{:>7}{:>8}{:>9}{:>10}{:>10}",
             "method",
             "precision",
             "time s",
@@ -251,7 +255,7 @@ impl Report {
             let points = stats.work.get("intersection_points").copied().unwrap_or(0);
             let Agreement { wrong, missed, phantom, undecided, .. } = agreement;
             line(format_args!(
-                "{:<16}{:<10}{:>8.3}{ns_per_ray:>9.0}{points:>13}{:>8}{wrong:>7}{missed:>8}{phantom:>9}{undecided:>10}\
+                "{:<18}{:<10}{:>8.3}{ns_per_ray:>9.0}{points:>13}{:>8}{wrong:>7}{missed:>8}{phantom:>9}{undecided:>10}\
                  {times_oracle:>10.0}",
                 name(stats.method.to_possible_value()),
                 name(stats.precision.to_possible_value()),
@@ -261,7 +265,7 @@ impl Report {
         }
         let OracleStats { rays, hit_rays, roots, open, seconds } = self.oracle;
         line(format_args!(
-            "{:<16}{:<10}{seconds:>8.3}{:>9.0}{roots:>13}{hit_rays:>8}{:>7}{:>8}{:>9}{open:>10}{:>10}",
+            "{:<18}{:<10}{seconds:>8.3}{:>9.0}{roots:>13}{hit_rays:>8}{:>7}{:>8}{:>9}{open:>10}{:>10}",
             "oracle",
             "f64",
             seconds / rays.max(1) as f64 * 1e9,

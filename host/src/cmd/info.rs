@@ -245,11 +245,12 @@ impl Memory {
         };
         let methods = Method::value_variants().iter().map(|method| {
             let bytes = prepared.bytes(Stages::of(*method));
+            let lane = prepared.tracer(&Settings { method: *method, ..*settings }).lane_bytes();
             let memory = MethodMemory {
                 arena_bytes: bytes.total(),
                 arena_bytes_by_kind: bytes,
-                coherence_bytes_per_thread: prepared.coherence_bytes(*method),
-                scratch_bytes_per_thread: prepared.scratch_bytes(),
+                coherence_bytes_per_thread: lane.coherence,
+                scratch_bytes_per_thread: lane.scratch,
             };
             (name(method), memory)
         });

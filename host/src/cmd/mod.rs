@@ -20,7 +20,7 @@ use crate::lower::LowerError;
 use crate::output::{Output, OutputError};
 use crate::scene::error::InputError;
 use crate::settings::Flags;
-use crate::stats::{Stats, to_json};
+use crate::stats::{Asked, Stats, to_json};
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug, Error, Diagnostic)]
@@ -155,10 +155,13 @@ pub(crate) fn progress(length: u64, what: &'static str, quiet: bool) -> Progress
 /// The line that sums a run up.
 pub(crate) fn summary(stats: &Stats) -> String {
     let rays = stats.rays.max(1) as f64;
+    let hits = match (stats.asked, stats.work.get("intersection_points")) {
+        (Asked::All, Some(points)) => format!("{} that hit, {points} points", stats.hit_rays),
+        _ => format!("{} hits", stats.hit_rays),
+    };
     format!(
-        "{} rays, {} hits; prepared in {:.3} s, intersected in {:.3} s ({:.0} ns per ray)",
+        "{} rays, {hits}; prepared in {:.3} s, intersected in {:.3} s ({:.0} ns per ray)",
         stats.rays,
-        stats.hit_rays,
         stats.prepare_seconds,
         stats.intersect_seconds,
         stats.intersect_seconds / rays * 1e9,

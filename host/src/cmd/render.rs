@@ -61,7 +61,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     bar.finish_and_clear();
     refuse_pixels(&drawn, scene, &loaded)?;
 
-    let mut stats = Stats::new(scene.display().to_string(), settings, &prepared, prepare_seconds, &drawn.tally);
+    let (scene, lane) = (scene.display().to_string(), tracer.lane_bytes());
+    let mut stats = Stats::new(scene, settings, &prepared, prepare_seconds, lane, &drawn.tally);
     stats.size = Some(size);
     drawn.picture.write_png(&mut png).map_err(|reason| png.failed(reason))?;
     png.finish()?;

@@ -1,3 +1,5 @@
+use clap::ValueEnum;
+
 use super::*;
 use crate::memory::Kind;
 use crate::scene::shapes::{bilinear, single, torus};
@@ -17,7 +19,7 @@ fn bytes_are_sizes_times_slots() {
     assert_eq!((newton.of(Kind::GridVoxels), newton.of(Kind::TreeLinks)), (0, bytes.of(Kind::TreeLinks)));
 
     // A method's own stages alone take what its part of all stages takes.
-    for method in [Method::Newton, Method::NewtonCoherent] {
+    for &method in Method::value_variants() {
         let stages = Stages::of(method);
         let alone = Lowered::<Plain<f64>>::build(&model, stages, &Preparation::default()).expect("built");
         assert_eq!(alone.bytes(Stages::ALL).total(), lowered.bytes(stages).total());

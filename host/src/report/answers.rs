@@ -4,6 +4,10 @@
 //! 1 for the statuses `ok` and `graze` and 0 for `miss`, `gave-up:LIMIT` and `invalid`. Numbers are the shortest text that
 //! reads back to the same bits in the precision they were computed in. Without a hit they are empty, except that a ray that
 //! was given up has the best so far, which is not an answer.
+//!
+//! Where all hits were asked for, a ray has a line per hit, in order of t, and one line if it has none. The lines of a ray
+//! that was given up have the hits found by then, with `hit` 0 and the status `gave-up:LIMIT`: there may be others. If the
+//! limit is `hits`, there are more, farther ones.
 use std::io::{self, Write};
 
 use crate::number::{Number, Shortest};
@@ -23,12 +27,12 @@ pub struct Found<S> {
     pub normal: Option<[S; 3]>,
 }
 
-/// What became of a ray.
+/// What a line says of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer<'a, S> {
-    /// The closest hit: status `ok`.
+    /// A hit: status `ok`.
     Hit(Found<S>),
-    /// The closest hit, where the ray grazes the surface: status `graze`.
+    /// A hit, where the ray grazes the surface: status `graze`.
     Graze(Found<S>),
     /// No hit: status `miss`.
     Miss,
@@ -36,7 +40,7 @@ pub enum Answer<'a, S> {
     GaveUp {
         /// The limit that ran out.
         limit: &'a str,
-        /// The closest hit so far, if there was one.
+        /// The closest hit so far, or one of all of them, if there was one.
         best: Option<Found<S>>,
     },
     /// The ray could not be traced: status `invalid`.
@@ -67,14 +71,14 @@ impl<S> Answer<'_, S> {
     }
 }
 
-/// Writes answers one by one; rays are numbered in the order in which they come.
+/// Writes answers ray by ray; rays are numbered in the order in which they come.
 ///
 /// ```
 /// use patchray_host::report::answers::{Answer, Answers, Found};
 /// let mut text = Vec::new();
 /// let mut answers = Answers::new(&mut text)?;
-/// answers.push(&Answer::Hit(Found { t: 4.0_f32, u: 0.1, v: 1.0, patch: 7, normal: Some([0.0, 0.0, 1.0]) }))?;
-/// answers.push(&Answer::<f32>::Miss)?;
+/// answers.push([Answer::Hit(Found { t: 4.0_f32, u: 0.1, v: 1.0, patch: 7, normal: Some([0.0, 0.0, 1.0]) })])?;
+/// answers.push([Answer::<f32>::Miss])?;
 /// answers.finish()?;
 /// assert_eq!(
 ///     String::from_utf8_lossy(&text),
@@ -100,13 +104,17 @@ impl<W: Write> Answers<W> {
         Ok(Self { csv, next: 0, field: String::new() })
     }
 
-    /// Writes the line of the next ray.
+    /// Writes the lines of the next ray.
     ///
     /// # Errors
     /// What the output ran into.
-    pub fn push<S: Number>(&mut self, answer: &Answer<S>) -> io::Result<()> {
+    pub fn push<'a, S: Number + 'a>(&mut self, lines: impl IntoIterator<Item = Answer<'a, S>>) -> io::Result<()> {
         let ray = self.next;
         self.next += 1;
+        lines.into_iter().try_for_each(|line| self.line(ray, &line))
+    }
+
+    fn line<S: Number>(&mut self, ray: u64, answer: &Answer<S>) -> io::Result<()> {
         self.write(format_args!("{ray}"))?;
         self.write(format_args!("{}", u8::from(answer.is_hit())))?;
         let found = answer.found();
@@ -166,8 +174,8 @@ mod tests {
     fn lines<S: Number>(answers: &[Answer<S>]) -> Vec<String> {
         let mut text = Vec::new();
         let mut writer = Answers::new(&mut text).expect("to memory");
-        for answer in answers {
-            writer.push(answer).expect("to memory");
+        for &answer in answers {
+            writer.push([answer]).expect("to memory");
         }
         writer.finish().expect("to memory");
         String::from_utf8(text).expect("UTF-8").lines().skip(1).map(str::to_owned).collect()
@@ -193,6 +201,20 @@ mod tests {
             "5,0,,,,,,,,invalid",
         ];
         assert_eq!(lines(&answers), expected);
+    }
+
+    #[test]
+    fn the_lines_of_a_ray_have_its_number() {
+        let mut text = Vec::new();
+        let mut writer = Answers::new(&mut text).expect("to memory");
+        let found = Found { t: 1.0_f64, u: 0.5, v: 0.5, patch: 0, normal: None };
+        for lines in [vec![Answer::Miss], vec![Answer::Hit(found), Answer::Graze(found)], vec![Answer::Miss]] {
+            writer.push(lines).expect("to memory");
+        }
+        writer.finish().expect("to memory");
+        let text = String::from_utf8(text).expect("UTF-8");
+        let numbers: Vec<_> = text.lines().skip(1).map(|line| &line[..4]).collect();
+        assert_eq!(numbers, ["0,0,", "1,1,", "1,1,", "2,0,"]);
     }
 
     #[test]

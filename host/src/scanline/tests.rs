@@ -1,5 +1,8 @@
+use clap::ValueEnum;
+
 use super::*;
 use crate::lower::Stages;
+use crate::method::NewtonCoherent;
 use crate::prepared::Prepared;
 use crate::scene::shapes::{Random, sphere};
 use crate::scene::teapot;
@@ -39,7 +42,7 @@ fn traced(settings: &Settings, rays: &[RayLine], block: usize) -> (Vec<Outcome>,
 #[test]
 fn blocks_and_threads_change_nothing() {
     let rays = rays(600);
-    for method in [Which::Newton, Which::NewtonCoherent] {
+    for &method in Which::value_variants() {
         for precision in [Precision::F32, Precision::F64] {
             let settings = Settings { method, precision, flatness: 0.005, ..Settings::default() };
             let whole = traced(&settings, &rays, rays.len());
@@ -56,7 +59,7 @@ fn blocks_and_threads_change_nothing() {
 #[test]
 fn coherence_stays_within_a_line() {
     let mut rays = rays(200);
-    let settings = Settings { flatness: 0.005, ..Settings::default() };
+    let settings = Settings { method: Which::NewtonCoherent, flatness: 0.005, ..Settings::default() };
     rays.iter_mut().for_each(|ray| ray.scan_line = 7);
     let (one_line, tally) = traced(&settings, &rays, 50);
     assert!(tally.count("verified") + tally.count("decided_by_list") > 50);
@@ -71,13 +74,13 @@ fn coherence_stays_within_a_line() {
 #[test]
 fn line_numbers_start_again_before_they_run_out() {
     let model = sphere([0.0; 3], 1.0);
-    let settings = Settings::default();
+    let settings = Settings { method: Which::NewtonCoherent, ..Settings::default() };
     let prepared = Prepared::build(&model, Stages::of(settings.method), &settings).expect("there is memory");
     let Prepared::WeightedF64(lowered) = &prepared else { panic!("a sphere is rational") };
-    let tracer = MethodTracer::new(crate::method::NewtonCoherent::over(lowered), settings.limits());
+    let tracer = MethodTracer::<NewtonCoherent, _>::new(Views::of(lowered), settings.limits());
     let mut lane = MethodLane {
         tracer: &tracer,
-        scratch: Scratch::new(),
+        scratch: Default::default(),
         basis: Basis::new(),
         memory: vec![Remembered::EMPTY; 8],
         line: u32::MAX - 4,

@@ -66,6 +66,16 @@ impl Check<'_> {
         Err(self.source.refuse(number.span(), format!("{what} is {value}"), "out of range", help))
     }
 
+    /// A number between 0 and 1, neither of them.
+    pub(super) fn share(&self, what: &str, number: &Spanned<f64>) -> Result<f64, InputError> {
+        let value = *number.get_ref();
+        if value > 0.0 && value < 1.0 {
+            return Ok(value);
+        }
+        let help = "write a number above 0 and below 1";
+        Err(self.source.refuse(number.span(), format!("{what} is {value}"), "out of range", help))
+    }
+
     /// A whole number of at least 1.
     pub(super) fn count(&self, what: &str, number: &Spanned<u32>) -> Result<u32, InputError> {
         match *number.get_ref() {

@@ -30,11 +30,12 @@
 //!     shininess = 60
 //!
 //!     [trace]
-//!     method = "newton-coherent"
+//!     method = "clipping-coherent"
 //!     precision = "f64"
 //!     acceptance = "paper"
 //!     newton_iterations = 12
 //!     newton_starts = 3
+//!     clip_threshold = 0.2
 //!     flatness = 0.0005
 //!     grid_density = 4.0
 //!     threads = 2

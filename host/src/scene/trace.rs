@@ -16,8 +16,22 @@ pub enum Method {
     /// Patches in a binary tree, and Newton's iteration from each patch that the ray hits.
     Newton,
     /// Patches in a grid, and Newton's iteration from the previous ray's hit, verified by a testing ray.
-    #[default]
     NewtonCoherent,
+    /// Bézier clipping of each surface that the ray may meet: without patches, and all roots.
+    #[default]
+    Clipping,
+    /// Bézier clipping around the previous ray's hit first, verified by a testing ray through patches in a grid.
+    ClippingCoherent,
+}
+
+impl Method {
+    /// Whether it goes from one ray to the next, and therefore after the closest hit alone.
+    pub fn is_coherent(self) -> bool {
+        match self {
+            Method::Newton | Method::Clipping => false,
+            Method::NewtonCoherent | Method::ClippingCoherent => true,
+        }
+    }
 }
 
 /// The precision in which hits are computed.
@@ -61,6 +75,8 @@ pub struct TraceSettings {
     pub newton_iterations: Option<u32>,
     /// Newton starts per patch, 1 to [`MAX_STARTS`].
     pub newton_starts: Option<u32>,
+    /// The share of an interval, between 0 and 1, that a clip has to remove, else the interval is bisected.
+    pub clip_threshold: Option<f64>,
     /// The bound, above 0, to which surfaces are subdivided: less makes more and flatter patches.
     pub flatness: Option<f64>,
     /// Voxels of a grid per patch in it, above 0: more makes smaller voxels.
@@ -90,6 +106,7 @@ pub(super) struct TraceTable {
     acceptance: Option<Acceptance>,
     newton_iterations: Option<Spanned<u32>>,
     newton_starts: Option<Spanned<u32>>,
+    clip_threshold: Option<Spanned<f64>>,
     flatness: Option<Spanned<f64>>,
     grid_density: Option<Spanned<f64>>,
     threads: Option<Spanned<u32>>,
@@ -120,6 +137,11 @@ impl TraceTable {
             acceptance: self.acceptance,
             newton_iterations: count("`newton_iterations`", &self.newton_iterations)?,
             newton_starts: at_most("`newton_starts`", &self.newton_starts, MAX_STARTS)?,
+            clip_threshold: self
+                .clip_threshold
+                .as_ref()
+                .map(|share| check.share("`clip_threshold`", share))
+                .transpose()?,
             flatness: positive("`flatness`", &self.flatness)?,
             grid_density: positive("`grid_density`", &self.grid_density)?,
             threads: at_most("`threads`", &self.threads, MAX_THREADS)?,

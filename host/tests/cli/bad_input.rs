@@ -20,6 +20,17 @@ fn usage_errors_end_with_2() {
         ("render scene.toml -o a.png --flatness NaN", &["flatness", "above 0"]),
         ("render scene.toml -o a.png --flatness -1", &["flatness", "above 0"]),
         ("render scene.toml -o a.png --grid-density inf", &["grid-density", "finite"]),
+        ("render scene.toml -o a.png --clip-threshold 0", &["clip-threshold", "above 0 and below 1"]),
+        ("render scene.toml -o a.png --clip-threshold -0.2", &["clip-threshold", "above 0 and below 1"]),
+        ("query teapot.bpt rays.csv --clip-threshold 20%", &["clip-threshold", "above 0 and below 1"]),
+        ("render scene.toml -o a.png --limit clip-step=5", &["did you mean `clip-steps`?"]),
+        ("render scene.toml -o a.png --limit bisections=-1", &["whole number"]),
+        ("query teapot.bpt rays.csv -o a.csv --limit pending-domains=65", &["the most is 64"]),
+        ("query teapot.bpt rays.csv -o a.csv --all --any", &["--all", "--any"]),
+        ("query teapot.bpt rays.csv -o a.csv --all --method clipping-coherent", &["the closest hit alone"]),
+        ("query teapot.bpt rays.csv -o a.csv --all --method newton-coherent --stats s.json", &["--method clipping"]),
+        ("query no.bpt rays.csv -o a.csv --any --method newton-coherent", &["the closest hit alone"]),
+        ("render scene.toml -o a.png --all", &["--all"]),
         ("render scene.toml -o a.png --threads 0", &["threads"]),
         ("render scene.toml -o a.png --limit voxel=5", &["did you mean `voxels`?"]),
         ("render scene.toml -o a.png --limit voxels=x", &["whole number"]),
@@ -45,6 +56,9 @@ fn bad_scene_files_end_with_3() {
         (SCENE.replace("teapot.bpt", "kettle.bpt"), &["bad.toml:1:", "kettle.bpt", "folder of the scene file"]),
         (SCENE.replace("flatness = 0.002", "newton_starts = 4"), &["bad.toml:9:17", "1 to 3"]),
         (SCENE.replace("flatness = 0.002", "flatness = nan"), &["bad.toml:9:12"]),
+        (SCENE.replace("flatness = 0.002", "clip_threshold = 1.5"), &["bad.toml:9:18", "below 1"]),
+        (SCENE.replace("flatness = 0.002", "clip_threshold = nan"), &["bad.toml:9:18", "below 1"]),
+        (format!("{SCENE}[trace.limits]\npending-domains = 65\n"), &["bad.toml:11:1", "the most is 64"]),
         (format!("{SCENE}[trace.limits]\nvoxel = 5\n"), &["bad.toml:11:1", "did you mean `voxels`?"]),
         (format!("{SCENE}[trace.limits]\nvoxels = 5000000000\n"), &["bad.toml:11:1", "4294967295"]),
         (SCENE.replace("9.3203125", "9e300"), &["bad.toml", "pixel (0, 0)"]),
@@ -189,9 +203,10 @@ fn what_is_invalid_can_be_left_out() {
 fn too_little_room_ends_with_4() {
     let folder = Folder::new();
     for (flags, parts) in [
-        ("--limit arena-bytes=100000", &["needs", "bytes", "given 100000", "patches"][..]),
-        ("--limit patches-per-surface=10", &["surface 0", "more than 10"]),
-        ("--flatness 1e-9 --limit patches-per-surface=1000", &["more than 1000", "--flatness"]),
+        ("--limit arena-bytes=10000", &["needs", "bytes", "given 10000", "control points"][..]),
+        ("--limit arena-bytes=100000 --method clipping-coherent", &["given 100000", "patches"]),
+        ("--limit patches-per-surface=10 --method newton", &["surface 0", "more than 10"]),
+        ("--flatness 1e-9 --limit patches-per-surface=1000 --method newton", &["more than 1000", "--flatness"]),
     ] {
         folder.fails(&format!("render scene.toml -o a.png {flags}"), 4, parts);
         folder.fails(&format!("query teapot.bpt rays.csv -o a.csv {flags}"), 4, parts);

@@ -9,6 +9,7 @@ use patchray_host::scene::{bpt, shapes, teapot};
 use serde_json::Value;
 use tempfile::TempDir;
 
+mod all_and_any;
 mod b_splines;
 mod bad_input;
 
@@ -105,6 +106,8 @@ fn ray_file() -> String {
     text
 }
 
+const METHODS: [&str; 4] = ["newton", "newton-coherent", "clipping", "clipping-coherent"];
+
 const TEAPOT: &str = "teapot.bpt rays.csv --flatness 0.002";
 
 #[test]
@@ -121,7 +124,7 @@ fn render_draws_and_counts() {
     let stats = folder.json("stats.json");
     assert_eq!(
         (&stats["schema"], &stats["method"], &stats["precision"]),
-        (&1.into(), &"newton-coherent".into(), &"f64".into())
+        (&1.into(), &"clipping".into(), &"f64".into())
     );
     for field in [
         "scene",
@@ -146,14 +149,23 @@ fn render_draws_and_counts() {
         assert!(!stats[field].is_null(), "{field}");
     }
     assert_eq!((&stats["rays"], &stats["surfaces"], &stats["gave_up"]), (&3072.into(), &32.into(), &0.into()));
-    assert!(stats["newton_starts"].as_u64() > stats["hit_rays"].as_u64());
+    assert!(stats["clip_steps"].as_u64() > stats["hit_rays"].as_u64());
+    assert_eq!((&stats["patches"], &stats["asked"]), (&0.into(), &"closest".into()));
     // What the scene file and the flags say is what is in effect; the flags win.
-    assert_eq!(stats["settings"]["flatness"], 0.002);
-    let flags = "--flatness 0.004 --newton-starts 2 --limit voxels=9999 --size 8x8";
-    folder.done(&format!("render scene.toml -o out.png --stats stats.json {flags}"));
+    let settings = &stats["settings"];
+    assert_eq!((&settings["flatness"], &settings["clip_threshold"]), (&0.002.into(), &0.2.into()));
+    let trace = "clip_threshold = 0.1\nnewton_starts = 1\n[trace.limits]\nclip-steps = 500\nbisections = 50\n";
+    folder.put("own.toml", format!("{SCENE}{trace}"));
+    let flags = "--flatness 0.004 --newton-starts 2 --limit voxels=9999 --limit bisections=60 --size 8x8";
+    folder.done(&format!("render own.toml -o out.png --stats stats.json {flags} --limit pending-domains=9"));
     let settings = &folder.json("stats.json")["settings"];
     assert_eq!((&settings["flatness"], &settings["newton_starts"]), (&0.004.into(), &2.into()));
-    assert_eq!(settings["limits"]["voxels"], 9999);
+    assert_eq!(settings["clip_threshold"], 0.1);
+    for (limit, value) in [("voxels", 9999), ("clip-steps", 500), ("bisections", 60), ("pending-domains", 9)] {
+        assert_eq!(settings["limits"][limit], value, "{limit}");
+    }
+    folder.done("render own.toml -o out.png --stats stats.json --clip-threshold 0.35 --size 8x8");
+    assert_eq!(folder.json("stats.json")["settings"]["clip_threshold"], 0.35);
     // --json prints what --stats writes, but for the times.
     let quiet = folder.done("render scene.toml -o out.png --json --quiet --size 8x8");
     assert_eq!(said(&quiet), "");
@@ -173,7 +185,7 @@ fn threads_change_neither_pictures_nor_answers_nor_counters() {
         object.get_mut("settings").and_then(Value::as_object_mut).expect("settings").remove("threads");
         stats
     };
-    for method in ["newton", "newton-coherent"] {
+    for method in METHODS {
         for precision in ["f32", "f64"] {
             let flags = format!("--method {method} --precision {precision}");
             for threads in [1, 2] {
@@ -252,9 +264,20 @@ fn distance(ray: &RayLine, answer: &[&str]) -> f64 {
 #[test]
 fn small_budgets_give_up_by_name() {
     let folder = Folder::new();
-    for (limit, flags) in
-        [("surfaces", ""), ("voxels", ""), ("patches", ""), ("newton-steps", ""), ("nodes", "--method newton")]
-    {
+    let often_bisected = "--clip-threshold 0.9";
+    for (limit, flags) in [
+        ("surfaces", ""),
+        ("voxels", ""),
+        ("newton-steps", ""),
+        ("clip-steps", ""),
+        ("clip-steps", "--method clipping-coherent"),
+        ("clip-steps", "--any"),
+        ("bisections", often_bisected),
+        ("pending-domains", often_bisected),
+        ("patches", "--method newton-coherent"),
+        ("newton-steps", "--method newton-coherent"),
+        ("nodes", "--method newton"),
+    ] {
         let output = folder.done(&format!("query {TEAPOT} -o out.csv --stats s.json --limit {limit}=1 {flags}"));
         let told = said(&output);
         assert!(told.contains(&format!("gave up: the limit on {limit} ran out")), "{told}");
@@ -277,12 +300,12 @@ fn info_says_what_stats_report() {
     assert_eq!(info["control_box"]["max"], serde_json::json!([3.525, 2.0, 3.15]));
     for precision in ["f32", "f64"] {
         let memory = &info["memory"][precision];
-        for method in ["newton", "newton-coherent"] {
+        for method in METHODS {
             folder.done(&format!(
                 "render scene.toml -o o.png --size 4x4 --stats s.json --method {method} --precision {precision}"
             ));
             let stats = folder.json("s.json");
-            assert_eq!(memory["patches"], stats["patches"]);
+            assert_eq!(stats["patches"], if method == "clipping" { 0.into() } else { memory["patches"].clone() });
             for field in
                 ["arena_bytes", "arena_bytes_by_kind", "coherence_bytes_per_thread", "scratch_bytes_per_thread"]
             {
@@ -303,7 +326,7 @@ fn without_a_verb_the_teapot_is_compared_with_the_oracle() {
     let table = printed(&output);
     assert!(table.contains("Picture: target/teapot.png"), "{table}");
     assert!(folder.path("target/teapot.png").is_file());
-    for row in table.lines().skip(1).take(4) {
+    for row in table.lines().skip(1).take(8) {
         let words: Vec<_> = row.split_whitespace().collect();
         let judged: u64 = words[6..10].iter().map(|word| word.parse::<u64>().expect("a count")).sum();
         assert!(judged <= 2, "{table}");
@@ -358,4 +381,21 @@ fn inputs_come_by_standard_input_too() {
         let output = folder.command(words).stdin(input).output().expect("it starts");
         assert_eq!(printed(&output), expected, "{}", said(&output));
     }
+}
+
+/// What a coherent method believes, and what clipping takes for a clip worth its while, show in the counters.
+#[test]
+fn parameters_of_clipping_have_their_effect() {
+    let folder = Folder::new();
+    let mut hits = None;
+    let mut count = |flags: &str, counter: &str| {
+        folder.done(&format!("render scene.toml -o o.png --stats s.json {flags}"));
+        let stats = folder.json("s.json");
+        assert_eq!(*hits.get_or_insert(stats["hit_rays"].clone()), stats["hit_rays"], "{flags}");
+        stats[counter].as_u64().expect("a count")
+    };
+    let coherent = "--method clipping-coherent --acceptance";
+    assert!(count(&format!("{coherent} paper"), "verified") > count(&format!("{coherent} proved"), "verified"));
+    let cases = [0.05, 0.2, 0.6].map(|share| count(&format!("--clip-threshold {share}"), "bisections"));
+    assert!(cases.is_sorted_by(|less, more| less < more), "{cases:?}");
 }

@@ -112,6 +112,7 @@ fn values_out_of_range() {
     refused_after("[material]\nshininess = 0\n", "s.toml:6:13", "`shininess` is 0");
     refused_after("[trace]\nnewton_starts = 0\n", "s.toml:6:17", "`newton_starts` is 0");
     refused_after("[trace]\nthreads = 0\n", "s.toml:6:11", "`threads` is 0");
+    refused_after("[trace]\nclip_threshold = 1.0\n", "s.toml:6:18", "`clip_threshold` is 1");
     refused_after("[trace]\nflatness = inf\n", "s.toml:6:12", "`flatness` is inf");
     refused_after("[trace]\ngrid_density = 0.0\n", "s.toml:6:16", "`grid_density` is 0");
 }
