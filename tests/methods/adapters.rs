@@ -16,11 +16,15 @@ pub(crate) struct Adapter {
 }
 
 /// All of them.
-pub(crate) const ADAPTERS: [Adapter; 4] = [
+pub(crate) const ADAPTERS: [Adapter; 8] = [
     Adapter { method: Method::Newton, precision: Precision::F64 },
     Adapter { method: Method::NewtonCoherent, precision: Precision::F64 },
+    Adapter { method: Method::Clipping, precision: Precision::F64 },
+    Adapter { method: Method::ClippingCoherent, precision: Precision::F64 },
     Adapter { method: Method::Newton, precision: Precision::F32 },
     Adapter { method: Method::NewtonCoherent, precision: Precision::F32 },
+    Adapter { method: Method::Clipping, precision: Precision::F32 },
+    Adapter { method: Method::ClippingCoherent, precision: Precision::F32 },
 ];
 
 impl Adapter {
