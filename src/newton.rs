@@ -90,6 +90,15 @@ impl<S: Scalar> Local<S> {
         Some([(fv * g - gv * f) * inverse, (gu * f - fu * g) * inverse])
     }
 
+    /// Whether rounding alone may make the determinant what it is: each of its four factors is off by some roundings of
+    /// coordinates below 2, not of its own size.
+    #[inline(always)]
+    pub(crate) fn may_be_singular(&self) -> bool {
+        let ([fu, gu], [fv, gv]) = (self.du, self.dv);
+        let lengths = fu.abs() + gu.abs() + (fv.abs() + gv.abs());
+        !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * lengths)
+    }
+
     /// How far in u and in v the inverse of the Jacobian carries an error of this length in f and g, times the weight.
     #[inline(always)]
     pub(crate) fn inverse_bounds(&self, error: S) -> [S; 2] {
@@ -211,6 +220,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         let mut last = P::Scalar::INFINITY;
         let mut halvings = 0;
         let mut beyond_before = P::Scalar::INFINITY;
+        let mut at_edge = false;
         // Ends: a fixed number of evaluations.
         for _ in 0..limits.newton_iterations {
             spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
@@ -240,10 +250,17 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
             if surface.strays([du, dv]) <= limits.tolerance {
                 // Converged; what is left to see is whether the root lies on the surface or beyond its edge. Of a root on
                 // an edge the step may leave as much on the far side as on the near: neighbours must not both refuse it.
-                if !local.may_hold([next_u - held_u, next_v - held_v], limits.tolerance) {
+                if local.may_hold([next_u - held_u, next_v - held_v], limits.tolerance) {
+                    return Ok(Some(Place { at: [held_u, held_v], local }));
+                }
+                // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
+                // far along the surface: one more, from the edge, says on which side of it the root lies.
+                if at_edge {
                     return Ok(None);
                 }
-                return Ok(Some(Place { at: [held_u, held_v], local }));
+                at_edge = true;
+                (u, v, last) = (held_u, held_v, P::Scalar::INFINITY);
+                continue;
             }
             // An iterate outside is held at the edge, where a root may lie; one that goes on as far is leaving for good.
             let beyond = (next_u - held_u).abs() + (next_v - held_v).abs();

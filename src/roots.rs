@@ -41,7 +41,8 @@ impl<P: Point> Seen<'_, '_, P> {
         limits: &Limits<P::Scalar>,
         basis: &mut BasisView<'_, P::Scalar>,
     ) -> Result<bool, Limit> {
-        // A tolerance across the ray is more along it, but two roots so near are not told apart by anyone.
+        // A tolerance across the ray is more along it; but where the ray is all but tangent, to take two roots for one by
+        // depth alone would lose the nearer of a pair.
         let near = limits.tolerance * P::Scalar::from_u32(64);
         for old in self.roots {
             // On a straight line that the ray follows all points are one root; those outside the interval must not stand for

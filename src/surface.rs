@@ -266,8 +266,9 @@ impl<P: Point> Surface<'_, P> {
     /// Whether two points where a ray meets the surface are one to within `tolerance`: if on the way from one to the other,
     /// in (u, v), the surface strays from the ray by no more.
     pub fn same_root(&self, a: [P::Scalar; 2], b: [P::Scalar; 2], tolerance: P::Scalar) -> bool {
-        // Between two zeros, a function whose second-order part over the whole way is s strays by a quarter of it at most.
-        self.strays([a[0] - b[0], a[1] - b[1]]) <= tolerance * P::Scalar::from_u32(4)
+        // Between two zeros, a function whose second-order part over the whole way is s strays by a quarter of it at most. The
+        // roots themselves may be off by the tolerance.
+        self.strays([a[0] - b[0], a[1] - b[1]]) <= tolerance * P::Scalar::from_u32(8)
     }
 }
 

@@ -82,7 +82,7 @@ fn a_ray_in_a_flat_surface_is_no_miss() {
                 }
                 let name = format!("in a flat surface: {name}, slanted {slanted}");
                 for (query, answers) in queries.iter().zip(run_any::<S>(&name, &model, &queries, 2000)) {
-                    assert!(!missed(&answers), "{name} {query:?}");
+                    assert!(!missed(&answers), "{name} {query:?} {answers:?}");
                 }
             }
         }
