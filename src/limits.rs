@@ -60,7 +60,8 @@ pub struct Limits<S> {
 
 impl<S: Scalar> Default for Limits<S> {
     /// The paper's values where it gives one. The budgets are a hundred times what the hardest ray of the common teapot
-    /// needs: no honest ray of such a scene meets them, and a pathological one ends within milliseconds.
+    /// needs: no honest ray of such a scene meets them, and a pathological one ends within milliseconds (of degrees 15 × 15
+    /// within a tenth of a second).
     fn default() -> Self {
         Limits {
             newton_iterations: 12,
