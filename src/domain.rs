@@ -68,8 +68,8 @@ impl Domain {
         // Both ends in steps of the finest level.
         let ends = |index: u16| {
             let (level, index) = (level(index).min(MAX_LEVEL), u32::from(index));
-            let first = (index - (1 << level)) << (MAX_LEVEL - level);
-            [first, first + (1 << (MAX_LEVEL - level))]
+            let first = index.wrapping_sub(1 << level) << (MAX_LEVEL - level);
+            [first, first.wrapping_add(1 << (MAX_LEVEL - level))]
         };
         let overlap = |a: u16, b: u16| {
             let (a, b) = (ends(a), ends(b));
@@ -100,4 +100,24 @@ fn level(index: u16) -> u32 {
 fn width<S: Scalar>(index: u16) -> S {
     // A power of two of at most 2^15 converts exactly, and so does its quotient.
     S::ONE / S::from_u32(1 << level(index))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_adjoin_across_levels_and_others_do_not() {
+        let [low, high] = Domain::WHOLE.halves(true);
+        let [first, second] = low.halves(true);
+        assert!(low.adjoins(high) && second.adjoins(high) && !first.adjoins(high) && !high.adjoins(first));
+        assert!(first.adjoins(first) && Domain::WHOLE.adjoins(first.rough()));
+        // At a corner, of different levels in v too.
+        let [near, far] = second.halves(false);
+        assert!(near.adjoins(high.halves(false)[1]) && !near.adjoins(high.halves(false)[1].halves(false)[1]));
+        assert!(far.rough().adjoins(high.halves(false)[0]));
+        // Any bits, as in memory that nobody filled.
+        let rubbish = Domain { u: 0, v: u16::MAX };
+        let _ = rubbish.adjoins(high) | high.adjoins(rubbish);
+    }
 }

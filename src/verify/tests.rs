@@ -74,3 +74,38 @@ fn the_list_holds_what_lies_between_point_and_origin_from_the_point_on() {
     });
     assert_eq!((end, visits), (Err(Limit::NewtonSteps), 1));
 }
+
+/// A point on a sheet whose domain is [1/2, 1] in u, with another sheet before it, of a domain that adjoins it or does not;
+/// asked for yes or no.
+#[test]
+fn a_point_is_the_closest_or_critical_or_hidden_by_a_neighbour_or_by_another() {
+    let [low, high] = Domain::WHOLE.halves(true);
+    let frame = Frame::new(Aabb { low: [-0.5; 3], high: [0.5; 3] });
+    let sheet = |z: f64, domain: Domain| {
+        let points = [[-0.5, -0.5, z], [-0.5, 0.5, z], [0.5, -0.5, z], [0.5, 0.5, z]].map(Plain);
+        Measure::of(&Net::new(1, 1, &points).unwrap(), 1e-12).patch(domain)
+    };
+    let ask = |patches: &[Patch<f64>], u: f64, factor: f64| {
+        let boxes = |k: usize| patches[k].bounds().aabb();
+        let (mut offsets, mut references) = ([0; 200], [0; 200]);
+        let (mut a, mut b) = (Arena::new(&mut offsets[..]), Arena::new(&mut references[..]));
+        let slot = GridSlot::build(patches.len(), boxes, 8.0, 100, &mut a, &mut b).unwrap();
+        let grid = Grid::new(&slot, &offsets, &references).unwrap();
+        let ray = frame.ray([0.1, 0.2, -3.0], [0.0, 0.01, 1.0]).unwrap();
+        let (planes, range) = frame.enter(&ray, &Interval::ahead()).unwrap();
+        let root = Root { u, v: 0.5, depth: 0.1 - planes.origin()[2], grazing: false };
+        let limits = Limits { critical_factor: factor, ..Limits::default() };
+        verdict(&grid, patches, &planes, &root, range.min, &limits, &mut Work::default()).unwrap()
+    };
+    let owner = sheet(0.1, high);
+    assert_eq!(ask(&[owner], 0.75, 1.0), Verdict::Closest);
+    // Behind the point nothing hides it.
+    assert_eq!(ask(&[owner, sheet(0.3, low)], 0.75, 1.0), Verdict::Closest);
+    assert_eq!(ask(&[owner, sheet(-0.2, low)], 0.75, 1.0), Verdict::Hidden { by_neighbour: true });
+    let far = low.halves(true)[0];
+    assert_eq!(ask(&[sheet(-0.2, far), owner], 0.75, 1.0), Verdict::Hidden { by_neighbour: false });
+    // Eq. (1) comes before the list; a patch that is not flat is always critical; and so is a point that nobody holds.
+    assert_eq!(ask(&[owner, sheet(-0.2, low)], 0.75, 0.0), Verdict::Critical);
+    assert_eq!(ask(&[sheet(0.1, high.rough())], 0.75, 1.0), Verdict::Critical);
+    assert_eq!(ask(&[owner], 0.25, 1.0), Verdict::Critical);
+}
