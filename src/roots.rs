@@ -66,8 +66,7 @@ impl<P: Point> Seen<'_, '_, P> {
         b: &Root<P::Scalar>,
         basis: &mut BasisView<'_, P::Scalar>,
     ) -> Result<bool, Limit> {
-        for share in [0.381, 0.5, 0.803] {
-            let share = P::Scalar::from_f64(share);
+        for share in [P::Scalar::from_f64(0.381), P::Scalar::HALF, P::Scalar::from_f64(0.803)] {
             let at = [a.u + (b.u - a.u) * share, a.v + (b.v - a.v) * share];
             let degrees = self.surface.net.degrees();
             let jet = bernstein::jet(degrees, self.whole, at, basis, |p| p).map_err(|Full| Limit::Scratch)?;

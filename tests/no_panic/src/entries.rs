@@ -508,7 +508,7 @@ extern "C" fn clip_roots<P: Point>(
 pub struct OfRegion<S> {
     widths: [S; 2],
     points: [[S; 2]; 2],
-    halves: [Option<[Region<S>; 2]>; 3],
+    halves: [Option<[Region<S>; 2]>; 2],
     narrowed: Region<S>,
     common: Option<Region<S>>,
     says: [bool; 3],
@@ -529,7 +529,7 @@ extern "C" fn region<P: Point>(
 ) {
     out.widths = region.widths();
     out.points = [region.middle(), region.nearest(point)];
-    out.halves = [region.halves(Direction::U), region.halves(Direction::V), region.halves_of_wider()];
+    out.halves = [region.halves(Direction::U), region.halves(Direction::V)];
     out.narrowed = *region;
     out.narrowed.narrow(region.next, point);
     out.common = region.meet(other.sides);
