@@ -84,6 +84,15 @@ fn a_ray_that_passes_by_is_no_hit_however_near() {
         assert_eq!(roots([2, 1], &trough(), [[0.25 + gap, 0.1, 0.4], [0.0, 0.0, -1.0]]).0, [], "beside by {gap}");
         assert_eq!(roots([2, 1], &trough(), [[0.1, -0.25 - gap, 0.4], [0.0, 0.0, -1.0]]).0, [], "beside by {gap}");
     }
+    // Beside an edge that bulges to x = 0.3 between control points that go on to 0.35: their hull holds the ray.
+    let bulge: Vec<_> = [[-0.25; 3], [0.25, 0.35, 0.25]]
+        .iter()
+        .flat_map(|x| [0, 1, 2].map(|j| Plain([x[j], j as f64 * 0.25 - 0.25, 0.0])))
+        .collect();
+    for gap in [1e-3, 1e-6, 1e-9, 1e-11] {
+        assert_eq!(roots([1, 2], &bulge, [[0.3 + gap, 0.0, 0.4], [0.0, 0.0, -1.0]]).0, [], "bulge by {gap}");
+        assert_eq!(roots([1, 2], &bulge, [[0.3 - gap, 0.0, 0.4], [0.0, 0.0, -1.0]]).0.len(), 1, "bulge by {gap}");
+    }
     // Within the tolerance it is one.
     for gap in [0.0, 1e-15, -1e-15] {
         assert_eq!(roots([2, 1], &trough(), [[0.25 + gap, 0.1, 0.4], [0.0, 0.0, -1.0]]).0.len(), 1, "{gap}");
