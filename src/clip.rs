@@ -216,33 +216,35 @@ fn hull_at_zero<S: Scalar, const N: usize>(
         let [low, high] = extents[k];
         (least, largest) = (least.lesser(low), largest.greater(high));
     }
-    // Nothing only if it is separated from zero by more than that. A NaN clips nothing.
+    // Nothing only if it is separated from zero by more than rounding. A NaN clips nothing.
     if least > error || largest < -error {
         return Clip::Nothing;
     }
     if largest - least <= noise.tolerance * a.greater(b) + error * S::from_u32(4) {
         return Clip::Settled;
     }
-    // From an end that is clear of zero the hull's side toward zero counts; an end that holds zero is not clipped.
+    // An end that holds zero is not clipped.
     let last = order - 1;
     let degree = S::from_u32(last as u32);
     // A few roundings went into each.
     let slack = S::EPSILON * S::from_u32(4);
-    let mut part = [S::ZERO, S::ONE];
-    let [low, high] = extents[0];
-    if low > error {
-        part[0] = crossing::<S, N>(order, |k| extents[k][0] - error) / degree - slack;
-    } else if high < -error {
-        part[0] = crossing::<S, N>(order, |k| -extents[k][1] - error) / degree - slack;
-    }
-    let [low, high] = extents[last];
-    if low > error {
-        part[1] = S::ONE - (crossing::<S, N>(order, |k| extents[last - k][0] - error) / degree - slack);
-    } else if high < -error {
-        part[1] = S::ONE - (crossing::<S, N>(order, |k| -extents[last - k][1] - error) / degree - slack);
-    }
-    let [from, to] = [S::ZERO.greater(part[0]), S::ONE.lesser(part[1])];
+    let from = clear::<S, N>(order, |k| extents[k], error).map_or(S::ZERO, |at| at / degree - slack);
+    let to = clear::<S, N>(order, |k| extents[last - k], error).map_or(S::ONE, |at| S::ONE - (at / degree - slack));
+    let (from, to) = (S::ZERO.greater(from), S::ONE.lesser(to));
     if from < to { Clip::Part([from, to]) } else { Clip::Part([S::ZERO, S::ONE]) }
+}
+
+/// How far from its end the hull is clear of zero, counted by control points; `None` if the first extent holds zero.
+#[inline(always)]
+fn clear<S: Scalar, const N: usize>(order: usize, extent: impl Fn(usize) -> [S; 2], error: S) -> Option<S> {
+    let [low, high] = extent(0);
+    if low > error {
+        Some(crossing::<S, N>(order, |k| extent(k)[0] - error))
+    } else if high < -error {
+        Some(crossing::<S, N>(order, |k| -extent(k)[1] - error))
+    } else {
+        None
+    }
 }
 
 /// The first abscissa, counted by control points, where the hull of heights, the first of them above zero, comes down to

@@ -64,6 +64,7 @@ pub mod limits;
 pub mod arena;
 
 pub mod bernstein;
+pub mod casteljau;
 pub mod point;
 pub mod surface;
 
@@ -89,6 +90,7 @@ pub mod walk;
 pub mod newton;
 
 pub mod clip;
+mod part;
 pub mod region;
 mod roots;
 

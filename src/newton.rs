@@ -7,7 +7,7 @@
 //! ([`Net::bend`](crate::surface::Net::bend)), so the last step needs no evaluation after it. A small step alone is never
 //! enough.
 
-use crate::bernstein::{self, BasisView, Full, Jet};
+use crate::bernstein::{self, BasisView, Degrees, Full};
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::planes::{Planes, project_net};
 use crate::point::{Flat, Point};
@@ -53,12 +53,19 @@ pub(crate) struct Local<S> {
 }
 
 impl<S: Scalar> Local<S> {
+    /// Of a projected net, at (u, v).
     #[inline(always)]
-    pub(crate) fn of<F: Flat<Scalar = S>>(jet: &Jet<F>) -> Self {
+    pub(crate) fn at<F: Flat<Scalar = S>>(
+        at: [S; 2],
+        degrees: Degrees,
+        net: &[F],
+        basis: &mut BasisView<'_, S>,
+    ) -> Result<Self, Limit> {
+        let jet = bernstein::jet(degrees, net, at, basis, |p| p).map_err(|Full| Limit::Scratch)?;
         let (f_g, [fu, gu], [fv, gv]) = (jet.point.f_g(), jet.du.f_g(), jet.dv.f_g());
         let determinant = fu * gv - gu * fv;
         let size = (fu.abs() + gu.abs()) * (fv.abs() + gv.abs());
-        Local { f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight: jet.point.weight() }
+        Ok(Local { f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight: jet.point.weight() })
     }
 
     /// |f| + |g|, times the weight.
@@ -224,9 +231,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         // Ends: a fixed number of evaluations.
         for _ in 0..limits.newton_iterations {
             spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
-            let jet = bernstein::jet(surface.net.degrees(), flat, [u, v], self.basis, |p| p)
-                .map_err(|Full| Limit::Scratch)?;
-            let local = Local::of(&jet);
+            let local = Local::at([u, v], surface.net.degrees(), flat, self.basis)?;
             let residual = local.residual();
             // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
             if residual <= noise::<P::Scalar>() * local.weight {

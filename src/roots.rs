@@ -3,7 +3,7 @@
 //! A root on the border between two regions is found in both; one at a collapsed edge, all of whose parameters name one
 //! point, in every region that touches the edge.
 
-use crate::bernstein::{self, BasisView, Full};
+use crate::bernstein::BasisView;
 use crate::limits::{Limit, Limits};
 use crate::newton::{Local, Root};
 use crate::planes::Planes;
@@ -69,8 +69,7 @@ impl<P: Point> Seen<'_, '_, P> {
         for share in [P::Scalar::from_f64(0.381), P::Scalar::HALF, P::Scalar::from_f64(0.803)] {
             let at = [a.u + (b.u - a.u) * share, a.v + (b.v - a.v) * share];
             let degrees = self.surface.net.degrees();
-            let jet = bernstein::jet(degrees, self.whole, at, basis, |p| p).map_err(|Full| Limit::Scratch)?;
-            if !(Local::of(&jet).residual() <= self.allowed) {
+            if !(Local::at(at, degrees, self.whole, basis)?.residual() <= self.allowed) {
                 return Ok(false);
             }
         }

@@ -7,6 +7,7 @@
 use crate::arena::Need;
 pub use crate::bernstein::Direction;
 use crate::bernstein::{self, BasisView, Degrees, Full, Jet, Linear, MAX_DEGREE};
+use crate::casteljau;
 use crate::point::Point;
 use crate::scalar::{Scalar, Vector3};
 use heapless::vec::VecView;
@@ -228,8 +229,8 @@ impl<'m, P: Point> Net<'m, P> {
     pub fn restrict(&self, u: [P::Scalar; 2], v: [P::Scalar; 2], out: &mut VecView<P>) -> Result<(), Full> {
         out.clear();
         out.extend_from_slice(self.points).map_err(|_| Full)?;
-        bernstein::restrict(self.degrees, out, Direction::U, u);
-        bernstein::restrict(self.degrees, out, Direction::V, v);
+        casteljau::restrict(self.degrees, out, Direction::U, u);
+        casteljau::restrict(self.degrees, out, Direction::V, v);
         Ok(())
     }
 

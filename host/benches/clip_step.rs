@@ -1,7 +1,8 @@
 //! What does one clip step cost, a clip and the restriction to what it leaves, by degree?
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use patchray::bernstein::{Degrees, Direction, Tuple, restrict};
+use patchray::bernstein::{Degrees, Direction, Tuple};
+use patchray::casteljau::restrict;
 use patchray::clip::{Clip, Noise, clip};
 use std::hint::black_box;
 

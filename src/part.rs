@@ -1,0 +1,134 @@
+//! The projected net of a region of a surface, and what rounding may have done to it.
+
+use crate::bernstein::{Degrees, Direction, Full};
+use crate::casteljau;
+use crate::point::Flat;
+use crate::region::Region;
+use crate::scalar::Scalar;
+use heapless::vec::VecView;
+
+/// The net of a region, in lent room, and the region that it is of.
+pub(crate) struct Part<'a, F: Flat> {
+    pub(crate) region: Region<F::Scalar>,
+    pub(crate) degrees: Degrees,
+    pub(crate) net: &'a mut [F],
+    /// A bound of the coefficients' |f| and |g|.
+    reach: F::Scalar,
+    /// By how much the coefficients may be off.
+    pub(crate) error: F::Scalar,
+}
+
+impl<'a, F: Flat> Part<'a, F> {
+    /// The whole surface, its projected net copied into lent room; `None` if it is seen to pass the ray by.
+    #[inline(always)]
+    pub(crate) fn whole(degrees: Degrees, whole: &[F], room: &'a mut VecView<F>) -> Result<Option<Self>, Full> {
+        let error = projection_error();
+        let Some(reach) = straddling(whole, error) else {
+            return Ok(None);
+        };
+        if room.len() < whole.len() {
+            room.resize(whole.len(), F::ZERO).map_err(|_| Full)?;
+        }
+        let net = room.get_mut(..whole.len()).ok_or(Full)?;
+        net.iter_mut().zip(whole).for_each(|(slot, &point)| *slot = point);
+        Ok(Some(Part { region: Region::WHOLE, degrees, net, reach, error }))
+    }
+
+    /// To a region of the surface: from what it is, if that holds it, else from the whole again.
+    pub(crate) fn become_region(&mut self, whole: &[F], region: Region<F::Scalar>) {
+        let holds = |outer: [F::Scalar; 2], inner: [F::Scalar; 2]| outer[0] <= inner[0] && inner[1] <= outer[1];
+        let old = self.region.sides;
+        let mut from = [[F::Scalar::ZERO, F::Scalar::ONE]; 2];
+        if holds(old[0], region.sides[0]) && holds(old[1], region.sides[1]) {
+            from = old;
+        } else {
+            self.net.iter_mut().zip(whole).for_each(|(slot, &point)| *slot = point);
+            (self.reach, self.error) = (reach(whole), projection_error());
+        }
+        for (direction, (outer, inner)) in
+            [Direction::U, Direction::V].into_iter().zip(from.into_iter().zip(region.sides))
+        {
+            if outer != inner {
+                let width = outer[1] - outer[0];
+                self.restrict(direction, inner.map(|c| (c - outer[0]) / width));
+            }
+        }
+        self.region = region;
+    }
+
+    /// To a part of itself, counted across it from 0 to 1.
+    #[inline(always)]
+    pub(crate) fn narrow(&mut self, direction: Direction, part: [F::Scalar; 2]) {
+        self.restrict(direction, part);
+        self.region.narrow(direction, part);
+    }
+
+    #[inline(always)]
+    fn restrict(&mut self, direction: Direction, part: [F::Scalar; 2]) {
+        let degree = match direction {
+            Direction::U => self.degrees.u,
+            Direction::V => self.degrees.v,
+        };
+        // Each of up to 2 · degree levels of de Casteljau's algorithm rounds a sum of two products.
+        let roundings = F::Scalar::from_u32(3 * u32::from(degree));
+        self.error += roundings * F::Scalar::EPSILON * self.reach;
+        casteljau::restrict(self.degrees, self.net, direction, part);
+        // A part reaches no farther than the whole, so a bound need not be renewed each time.
+        if direction == Direction::V {
+            self.reach = reach(self.net);
+        }
+    }
+
+    /// The parameter along which the net is longer, as the ray sees it: by its longest step from one point to the next.
+    #[cold]
+    pub(crate) fn longer(&self) -> Direction {
+        let columns = self.degrees.columns();
+        let step = |p: F, q: F| {
+            let [f, g] = (q - p).f_g();
+            f.abs() + g.abs()
+        };
+        let longest = |most: F::Scalar, (&p, &q): (&F, &F)| most.greater(step(p, q));
+        let along_u = self.net.iter().zip(self.net.iter().skip(columns)).fold(F::Scalar::ZERO, longest);
+        let rows = self.net.chunks_exact(columns);
+        let along_v = rows.fold(F::Scalar::ZERO, |most, row| row.iter().zip(row.iter().skip(1)).fold(most, longest));
+        if along_u >= along_v { Direction::U } else { Direction::V }
+    }
+}
+
+/// The largest |f| or |g| of a projected net.
+#[inline(always)]
+fn reach<F: Flat>(net: &[F]) -> F::Scalar {
+    // Two points at a time, so that one comparison need not wait for another.
+    let mut most = [F::Scalar::ZERO; 4];
+    let mut pairs = net.chunks_exact(2);
+    let mut add = |points: [F; 2]| {
+        let [[f, g], [h, i]] = points.map(Flat::f_g);
+        most = [most[0].greater(f.abs()), most[1].greater(g.abs()), most[2].greater(h.abs()), most[3].greater(i.abs())];
+    };
+    for pair in &mut pairs {
+        if let &[p, q] = pair {
+            add([p, q]);
+        }
+    }
+    pairs.remainder().iter().for_each(|&p| add([p, p]));
+    most[0].greater(most[1]).greater(most[2].greater(most[3]))
+}
+
+/// By how much a projected coefficient may be off: some three roundings of numbers below 4; twice that, so that an edge which
+/// two surfaces share but for its last bits is lost by neither.
+fn projection_error<S: Scalar>() -> S {
+    S::EPSILON * S::from_u32(8)
+}
+
+/// The largest |f| or |g|, if both take both signs, or nearly; if not, no point of the surface is on the ray.
+#[inline(always)]
+fn straddling<F: Flat>(net: &[F], error: F::Scalar) -> Option<F::Scalar> {
+    let (mut low, mut high) = ([F::Scalar::INFINITY; 2], [F::Scalar::LEAST; 2]);
+    for point in net {
+        let f_g = point.f_g();
+        low = [low[0].lesser(f_g[0]), low[1].lesser(f_g[1])];
+        high = [high[0].greater(f_g[0]), high[1].greater(f_g[1])];
+    }
+    let straddles = low[0] <= error && low[1] <= error && high[0] >= -error && high[1] >= -error;
+    straddles.then(|| high[0].greater(high[1]).greater(-low[0]).greater(-low[1]))
+}
