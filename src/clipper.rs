@@ -51,22 +51,92 @@ pub struct Clipper<'a, 's, 'm, P: Point> {
     pub room: &'a mut ClipRoom<'s, P>,
 }
 
+/// What a proof of at most one root came to.
+pub(crate) enum Single<S> {
+    /// There is none.
+    Nothing,
+    /// One, and the surface there to first order.
+    Root(Root<S>, Local<S>),
+    /// There may be more than one.
+    Unproved,
+}
+
 impl<P: Point> Clipper<'_, '_, '_, P> {
+    /// Projects the net, for [`Clipper::single`] and [`Clipper::roots_within`].
+    #[inline(always)]
+    pub(crate) fn project(&mut self) -> Result<(), Limit> {
+        project_net(&self.surface.net, self.planes, self.room.whole).map(|_| ()).map_err(|Full| Limit::Scratch)
+    }
+
+    /// The root in a region, if it is proved to hold one at most. The net has to be projected.
+    #[inline(always)]
+    pub(crate) fn single(&mut self, region: Region<P::Scalar>, work: &mut Work) -> Result<Single<P::Scalar>, Limit> {
+        let Clipper { surface, planes, limits, room } = self;
+        let ClipRoom { whole, basis, .. } = &mut **room;
+        let whole = whole.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
+        Ok(match contract(surface, whole, region, limits, basis, work)? {
+            Step::Done(Some(place)) => {
+                let root = place.root(&surface.net, planes, limits, basis)?;
+                Single::Root(root, place.local)
+            }
+            Step::Done(None) => Single::Nothing,
+            _ => Single::Unproved,
+        })
+    }
+
+    /// All points where the ray's line meets a region of the surface, to `found`, with the surface there to first order. The
+    /// net has to be projected.
+    #[inline(always)]
+    pub(crate) fn roots_within(
+        &mut self,
+        region: Region<P::Scalar>,
+        work: &mut Work,
+        mut found: impl FnMut(Root<P::Scalar>, Local<P::Scalar>, &mut Work),
+    ) -> Result<(), Limit> {
+        match self.single(region, work)? {
+            Single::Nothing => Ok(()),
+            Single::Root(root, local) => {
+                found(root, local, work);
+                Ok(())
+            }
+            Single::Unproved => self.clipped(Order::Any, Some(region), work, |root, local, _, work| {
+                found(root, local, work);
+                Ok(true)
+            }),
+        }
+    }
+
     /// All points where the ray's line meets the surface, in `order`, to `found`; which also learns whether regions still
     /// wait, and says whether to go on.
     #[inline(always)]
     pub fn roots(
         &mut self,
-        mut order: Order<P::Scalar>,
+        order: Order<P::Scalar>,
         work: &mut Work,
         mut found: impl FnMut(Root<P::Scalar>, bool, &mut Work) -> Result<bool, Limit>,
     ) -> Result<(), Limit> {
+        self.project()?;
+        self.clipped(order, None, work, |root, _, regions_wait, work| found(root, regions_wait, work))
+    }
+
+    /// [`Clipper::roots`] of a region of the surface, or all of it, from the projected net.
+    #[inline(always)]
+    fn clipped(
+        &mut self,
+        mut order: Order<P::Scalar>,
+        region: Option<Region<P::Scalar>>,
+        work: &mut Work,
+        mut found: impl FnMut(Root<P::Scalar>, Local<P::Scalar>, bool, &mut Work) -> Result<bool, Limit>,
+    ) -> Result<(), Limit> {
         let Clipper { surface, planes, limits, room } = self;
         let ClipRoom { whole, part, pending, roots, basis } = &mut **room;
-        let whole: &[P::Flat] = project_net(&surface.net, planes, whole).map_err(|Full| Limit::Scratch)?;
+        let whole: &[P::Flat] = whole.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
         let Some(mut part) = Part::whole(surface.net.degrees(), whole, part).map_err(|Full| Limit::Scratch)? else {
             return Ok(());
         };
+        if let Some(region) = region {
+            part.become_region(whole, region);
+        }
         pending.clear();
         roots.clear();
         let least = whole.iter().fold(P::Scalar::ONE, |least, point| least.lesser(point.weight()));
@@ -123,7 +193,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                 let root = place.root(&surface.net, planes, limits, basis)?;
                 let seen = Seen { surface, planes, whole, roots, allowed: allowed(tolerance, part.error) };
                 if !seen.holds(&root, limits, basis)? {
-                    if !found(root, !pending.is_empty(), work)? {
+                    if !found(root, place.local, !pending.is_empty(), work)? {
                         return Ok(());
                     }
                     let _ = roots.push(root);

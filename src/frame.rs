@@ -17,7 +17,7 @@ pub const PADDING: u32 = 64;
 
 /// Origins farther from 0 than this many times the scene's largest |coordinate| are first brought near, with the product
 /// t · direction carried to twice the precision. Nearer ones save that; they lose at most this many roundings.
-const NEAR: u32 = 8;
+pub(crate) const NEAR: u32 = 8;
 
 /// A box with sides along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,6 +131,23 @@ impl<S: Scalar> Frame<S> {
         S::EPSILON * S::from_u32(PADDING)
     }
 
+    /// Units of the frame per caller's unit, a power of two.
+    pub(crate) fn scale(&self) -> S {
+        self.scale
+    }
+
+    /// Caller's units per unit of the frame.
+    pub(crate) fn unscale(&self) -> S {
+        self.unscale
+    }
+
+    /// A length, in the caller's units, such that its quotient by a ray's speed along its steepest axis bounds all t in the
+    /// scene a few times over, for rays from `origin`.
+    pub(crate) fn farthest(&self, origin: [S; 3]) -> S {
+        let distance = S::Vec3::from_array(origin).largest();
+        ((distance + self.reach) * S::from_u32(8)).greater(self.unscale)
+    }
+
     /// Makes a ray; refuses NaN, infinity, a zero direction, and one whose t in the scene the type could not hold.
     pub fn ray(&self, origin: [S; 3], direction: [S; 3]) -> Result<Ray<S>, RayError> {
         let all = || origin.iter().chain(&direction);
@@ -147,8 +164,7 @@ impl<S: Scalar> Frame<S> {
         let distance = S::Vec3::from_array(origin).largest();
         // t grows to (distance + reach) / speed, a few times over on the way, and a step of depth is unscale / speed; said
         // without divisions, which cost more than all the rest here. A product that overflows or vanishes says the same.
-        let farthest = ((distance + self.reach) * S::from_u32(8)).greater(self.unscale);
-        let held = farthest < S::MAX * speed && self.unscale * S::EPSILON >= S::MIN_POSITIVE * speed;
+        let held = self.farthest(origin) < S::MAX * speed && self.unscale * S::EPSILON >= S::MIN_POSITIVE * speed;
         if !held {
             return Err(RayError::Unrepresentable);
         }

@@ -101,4 +101,10 @@ pub mod verify;
 
 pub mod scene;
 
+pub mod outline;
+
+pub mod view;
+
+pub mod line;
+
 pub mod method;

@@ -48,6 +48,8 @@ pub struct Limits<S> {
     pub patches: u32,
     /// Budget: voxels visited, of the scene's grid and the surfaces' grids together.
     pub voxels: u32,
+    /// Budget: spans of a view's scan line looked at.
+    pub spans: u32,
     /// Budget: Newton iterations, that is evaluations of a surface.
     pub newton_steps: u32,
     /// Budget: clips of a parameter's interval.
@@ -75,6 +77,7 @@ impl<S: Scalar> Default for Limits<S> {
             nodes: 1_000_000,
             patches: 1_000_000,
             voxels: 1_000_000,
+            spans: 1_000_000,
             newton_steps: 100_000,
             clip_steps: 50_000,
             bisections: 10_000,
@@ -96,6 +99,8 @@ pub struct Extent {
     pub scene_voxels: u32,
     /// The most voxels that one line can pass, summed over the surfaces' grids (0 for a method without them).
     pub surface_voxels: u32,
+    /// The most spans in one of a view's scan lines (0 for rays of no view).
+    pub spans: u32,
     /// How often a method may walk the grid of one surface for one ray: 0, or 2 with a testing ray first.
     pub walks: u32,
     /// Whether the method is a clipping method: these have no bound on clips but the budget.
@@ -120,6 +125,8 @@ impl<S: Scalar> Limits<S> {
                 .saturating_mul(extent.walks)
                 .saturating_add(extent.scene_voxels)
                 .min(self.voxels),
+            // Each of a line's spans may come into the list past all others, and is then looked at thrice.
+            spans_visited: extent.spans.saturating_mul(extent.spans.saturating_add(4)).min(self.spans),
             newton_starts: starts,
             newton_steps: starts.saturating_mul(self.newton_iterations).min(self.newton_steps),
             critical: patches,
@@ -170,6 +177,8 @@ counters! {
     patches_tested,
     /// Voxels visited, of the scene's grid and the surfaces' grids together.
     voxels_visited,
+    /// Spans of a view's scan line that were looked at.
+    spans_visited,
     /// Newton starts.
     newton_starts,
     /// Newton iterations: evaluations of a surface with its derivatives.
@@ -215,6 +224,8 @@ pub enum Limit {
     Patches,
     /// [`Limits::voxels`].
     Voxels,
+    /// [`Limits::spans`].
+    Spans,
     /// [`Limits::newton_steps`].
     NewtonSteps,
     /// [`Limits::clip_steps`].
@@ -227,6 +238,8 @@ pub enum Limit {
     Hits,
     /// The scratch is too small for a surface of these degrees: its capacities are the owner's choice.
     Scratch,
+    /// The ray is not of the part of the image that the scan line was made for.
+    Line,
     /// Coherence memory with fewer slots than surfaces.
     Memory,
     /// A slot of lent memory names a place that is not there: the memory was not filled by this crate.
@@ -241,12 +254,14 @@ impl Limit {
             Limit::Nodes => "nodes",
             Limit::Patches => "patches",
             Limit::Voxels => "voxels",
+            Limit::Spans => "spans",
             Limit::NewtonSteps => "newton-steps",
             Limit::ClipSteps => "clip-steps",
             Limit::Bisections => "bisections",
             Limit::PendingDomains => "pending-domains",
             Limit::Hits => "hits",
             Limit::Scratch => "scratch",
+            Limit::Line => "line",
             Limit::Memory => "memory",
             Limit::Slot => "slot",
         }

@@ -106,6 +106,18 @@ impl<S: Scalar> Local<S> {
         !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * lengths)
     }
 
+    /// How fast the root moves, in u and in v, if the ray's slopes change this fast: f and g, of which the derivatives are
+    /// taken at a fixed place on the surface, then change by that times the distance from the eye.
+    #[inline(always)]
+    pub(crate) fn rate(&self, distance: S, [slope_f, slope_g]: [S; 2]) -> Option<[S; 2]> {
+        if self.may_be_singular() {
+            return None;
+        }
+        let share = distance * self.weight / self.determinant;
+        let ([fu, gu], [fv, gv]) = (self.du, self.dv);
+        Some([(gv * slope_f - fv * slope_g) * share, (fu * slope_g - gu * slope_f) * share])
+    }
+
     /// How far in u and in v the inverse of the Jacobian carries an error of this length in f and g, times the weight.
     #[inline(always)]
     pub(crate) fn inverse_bounds(&self, error: S) -> [S; 2] {
@@ -123,6 +135,9 @@ impl<S: Scalar> Local<S> {
         moved <= (tolerance + noise()) * S::TWO * self.weight
     }
 }
+
+/// A root, and the surface there to first order.
+type Followed<S> = (Root<S>, Local<S>);
 
 /// Where a search ended: (u, v), and the surface there or nearby.
 pub(crate) struct Place<S> {
@@ -174,7 +189,7 @@ fn sine<S: Scalar>(tolerance: S) -> S {
 #[derive(Debug)]
 pub struct Solver<'a, 's, 'm, P: Point> {
     /// The surface.
-    pub surface: &'a Surface<'m, P>,
+    pub surface: Surface<'m, P>,
     /// The ray.
     pub planes: &'a Planes<P::Scalar>,
     /// Bounds on the work.
@@ -191,13 +206,13 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     /// A solver with lent room for the projected net and for evaluating it.
     #[inline(always)]
     pub fn new(
-        surface: &'a Surface<'m, P>,
+        surface: &Surface<'m, P>,
         planes: &'a Planes<P::Scalar>,
         limits: &'a Limits<P::Scalar>,
         flat: &'a mut VecView<P::Flat>,
         basis: &'a mut BasisView<'s, P::Scalar>,
     ) -> Self {
-        Solver { surface, planes, limits, flat, basis, projected: false }
+        Solver { surface: *surface, planes, limits, flat, basis, projected: false }
     }
 
     /// Solves from `start`; `None` if the iteration leads to no root, which does not prove that there is none.
@@ -210,15 +225,52 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         }
     }
 
+    /// As [`Solver::solve`], and the surface there to first order.
+    pub(crate) fn follow(
+        &mut self,
+        start: [P::Scalar; 2],
+        work: &mut Work,
+    ) -> Result<Option<Followed<P::Scalar>>, Limit> {
+        match self.iterate(start, work)? {
+            Some(place) => {
+                let root = place.root(&self.surface.net, self.planes, self.limits, self.basis)?;
+                Ok(Some((root, place.local)))
+            }
+            None => Ok(None),
+        }
+    }
+
+    /// The surface at (u, v) to first order.
+    pub(crate) fn local(&mut self, at: [P::Scalar; 2], work: &mut Work) -> Result<Local<P::Scalar>, Limit> {
+        spend(&mut work.newton_steps, self.limits.newton_steps, Limit::NewtonSteps)?;
+        self.project()?;
+        let flat = self.flat.get(..self.surface.net.points().len()).ok_or(Limit::Scratch)?;
+        Local::at(at, self.surface.net.degrees(), flat, self.basis)
+    }
+
+    #[inline(always)]
+    fn project(&mut self) -> Result<(), Limit> {
+        if !self.projected {
+            project_net(&self.surface.net, self.planes, self.flat).map_err(|Full| Limit::Scratch)?;
+            self.projected = true;
+        }
+        Ok(())
+    }
+
+    /// Goes over to another surface, if it is another.
+    #[inline(always)]
+    pub(crate) fn turn_to(&mut self, surface: &Surface<'m, P>) {
+        if self.surface.number != surface.number {
+            (self.surface, self.projected) = (*surface, false);
+        }
+    }
+
     /// Where the iteration comes to.
     #[inline(always)]
     fn iterate(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Place<P::Scalar>>, Limit> {
         let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
-        let (surface, limits) = (self.surface, self.limits);
-        if !self.projected {
-            project_net(&surface.net, self.planes, self.flat).map_err(|Full| Limit::Scratch)?;
-            self.projected = true;
-        }
+        self.project()?;
+        let (surface, limits) = (&self.surface, self.limits);
         let flat = self.flat.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
         work.newton_starts += 1;
         let [mut u, mut v] = start.map(|t| t.clamped(zero, one));

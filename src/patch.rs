@@ -66,6 +66,11 @@ impl<'m, S: Scalar> Patches<'m, S> {
         Patches { patches, first }
     }
 
+    /// The same division among surfaces over other patches.
+    pub(crate) fn with_patches(&self, patches: &'m [Patch<S>]) -> Self {
+        Patches { patches, first: self.first }
+    }
+
     /// All patches, surface by surface.
     pub fn all(&self) -> &'m [Patch<S>] {
         self.patches
@@ -131,6 +136,22 @@ impl<S: Scalar> Parallelepiped<S> {
     #[inline(always)]
     pub fn met(&self, planes: &Planes<S>) -> bool {
         self.crossing(planes).is_some()
+    }
+
+    /// Its eight corners.
+    pub(crate) fn corners(&self) -> [[S; 3]; 8] {
+        core::array::from_fn(|corner| {
+            self.axes.map(|[e1, e2, centre, e3]| {
+                let side = |bit: usize, edge: S| if corner & bit == 0 { -edge } else { edge };
+                centre + side(1, e1) + side(2, e2) + side(4, e3)
+            })
+        })
+    }
+
+    /// The box multiplied by a matrix, given by its rows.
+    pub(crate) fn turned(&self, rows: &[[S; 3]; 3]) -> Self {
+        let [x, y, z] = &self.axes;
+        Parallelepiped { axes: rows.map(|[a, b, c]| core::array::from_fn(|k| a * x[k] + b * y[k] + c * z[k])) }
     }
 
     /// The box along the axes around it.

@@ -100,6 +100,18 @@ impl<S: Scalar> Planes<S> {
         }
     }
 
+    /// Of a ray of a view: steepest along the third axis, which it goes forward. It has no use for inverses.
+    #[inline(always)]
+    pub(crate) fn turned(
+        origin: [S; 3],
+        direction: [S; 3],
+        t_origin: S,
+        t_per_depth: S,
+        interval: Interval<S>,
+    ) -> Self {
+        Planes::new(Axis::Z, origin, direction, [S::ZERO; 3], t_origin, t_per_depth, interval)
+    }
+
     /// The moved origin, in the frame: where depth is 0.
     pub fn origin(&self) -> [S; 3] {
         self.origin

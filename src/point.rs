@@ -33,6 +33,8 @@ pub trait Point:
     fn position(self) -> [Self::Scalar; 3];
     /// Scaled by powers of two: the position by 2^`position`, the weight by 2^`weight`.
     fn rescaled(self, position: i32, weight: i32) -> Self;
+    /// The position multiplied by a matrix, given by its rows.
+    fn turned(self, rows: &[[Self::Scalar; 3]; 3]) -> Self;
 }
 
 /// A control point without weight: x, y, z.
@@ -147,6 +149,10 @@ impl<S: Scalar> Point for Plain<S> {
     fn rescaled(self, position: i32, _weight: i32) -> Self {
         Plain(self.0.map(|c| c.times_power_of_two(position)))
     }
+    #[inline]
+    fn turned(self, rows: &[[S; 3]; 3]) -> Self {
+        Plain(rows.map(|row| product(&row, &self.0)))
+    }
 }
 
 impl<S: Scalar> Point for Weighted<S> {
@@ -176,4 +182,14 @@ impl<S: Scalar> Point for Weighted<S> {
             w.times_power_of_two(weight),
         ])
     }
+    #[inline]
+    fn turned(self, rows: &[[S; 3]; 3]) -> Self {
+        let [x, y, z] = rows.map(|row| product(&row, &self.weighted_position()));
+        Weighted([x, y, z, self.0[3]])
+    }
+}
+
+#[inline(always)]
+fn product<S: Scalar>(a: &[S; 3], b: &[S; 3]) -> S {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -88,6 +88,8 @@ pub enum RayError {
     ZeroDirection,
     /// Somewhere in the scene the ray's t is too large, or steps of t too small, for the number type.
     Unrepresentable,
+    /// Of a [view](crate::view): the ray is more than 45° off the view's direction, or not a number.
+    OutOfView,
 }
 
 impl core::fmt::Display for RayError {
@@ -97,6 +99,7 @@ impl core::fmt::Display for RayError {
             RayError::Infinite => "a coordinate is infinite",
             RayError::ZeroDirection => "the direction is zero",
             RayError::Unrepresentable => "its t in the scene, or small steps of it, cannot be held by the number type",
+            RayError::OutOfView => "it is more than 45 degrees off the view's direction",
         })
     }
 }

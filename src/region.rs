@@ -74,6 +74,16 @@ impl<S: Scalar> Region<S> {
         Some(smaller)
     }
 
+    /// The smallest rectangle that holds it and another.
+    #[inline(always)]
+    pub fn joined(&self, other: &Self) -> Self {
+        let mut larger = *self;
+        for (side, [from, to]) in larger.sides.iter_mut().zip(other.sides) {
+            *side = [side[0].lesser(from), side[1].greater(to)];
+        }
+        larger
+    }
+
     /// Whether it holds a point.
     pub fn holds(&self, point: [S; 2]) -> bool {
         self.sides.iter().zip(point).all(|(&[low, high], c)| low <= c && c <= high)

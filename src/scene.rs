@@ -187,6 +187,11 @@ impl<'m, P: Point> Scene<'m, P> {
         Scene { header, points, surfaces, offsets, references }
     }
 
+    /// The same surfaces over other points: of which then neither boxes nor grid hold true.
+    pub(crate) fn with_points(&self, points: &'m [P]) -> Self {
+        Scene { points, ..*self }
+    }
+
     /// What to keep beside the slots, for [`Scene::new`].
     pub fn header(&self) -> SceneHeader<P::Scalar> {
         self.header

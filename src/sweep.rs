@@ -1,12 +1,88 @@
-//! The patches whose parallelepipeds a line meets, in the order of its way through a surface's grid.
+//! The patches whose parallelepipeds a line meets, in the order of its way through a surface.
 //!
-//! A full search sweeps along the ray, a testing ray back toward its origin; both meet each patch once.
+//! A full search goes along the ray, a testing ray back toward its origin; both meet each patch once. What leads them to the
+//! patches is the surface's grid, or, for the rays of a view, the scan line.
 
+use crate::grid::Grid;
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::patch::{Crossing, Patch};
-use crate::planes::Planes;
+use crate::planes::{DepthRange, Planes};
 use crate::scalar::Scalar;
 use crate::walk::Walk;
+
+/// The patches of one surface, and what leads to those along a ray.
+pub trait Along<S: Scalar> {
+    /// Calls `visit` with each patch whose parallelepiped the ray, as a whole line, meets, front to back as far as is known.
+    ///
+    /// `visit` returns the depth up to which to go on.
+    fn ahead(
+        &self,
+        planes: &Planes<S>,
+        range: &DepthRange<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
+    ) -> Result<(), Limit>;
+
+    /// Calls `visit` with each patch whose parallelepiped the ray, as a whole line, meets, and which may reach into `range`:
+    /// from its far end on, as far as is known.
+    ///
+    /// `visit` returns whether to go on.
+    fn back(
+        &self,
+        planes: &Planes<S>,
+        range: &DepthRange<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<bool, Limit>,
+    ) -> Result<(), Limit>;
+}
+
+/// A surface's patches in its grid.
+#[derive(Clone, Copy, Debug)]
+pub struct InGrid<'m, S> {
+    /// The grid.
+    pub grid: Grid<'m, S>,
+    /// The patches of its surface.
+    pub patches: &'m [Patch<S>],
+}
+
+impl<S: Scalar> Along<S> for InGrid<'_, S> {
+    #[inline(always)]
+    fn ahead(
+        &self,
+        planes: &Planes<S>,
+        range: &DepthRange<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
+    ) -> Result<(), Limit> {
+        let Some((walk, begin)) = self.grid.enter(planes, range) else {
+            return Ok(());
+        };
+        sweep(walk, self.patches, planes, limits, work, |patch, crossing, work| {
+            Ok(visit(patch, crossing, work)? - begin)
+        })
+    }
+
+    #[inline(always)]
+    fn back(
+        &self,
+        planes: &Planes<S>,
+        range: &DepthRange<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<bool, Limit>,
+    ) -> Result<(), Limit> {
+        let inverse = planes.inverse().map(|c| -c);
+        let walk = self.grid.walk(&planes.at(range.max), &inverse, range.max - range.min);
+        let mut go_on = true;
+        sweep(walk, self.patches, planes, limits, work, |patch, crossing, work| {
+            go_on = go_on && visit(patch, crossing, work)?;
+            Ok(if go_on { S::INFINITY } else { S::LEAST })
+        })
+    }
+}
 
 /// Calls `visit` with each patch along `walk` whose parallelepiped the ray of `planes` meets, as a whole line.
 ///

@@ -4,13 +4,12 @@
 //! meets patches; the caller learns of each as it is met, so that no list is stored (a departure in order only).
 //! Newton's methods decide by the list ([`testing_ray`]), the clipping methods ask for yes or no ([`verdict`]).
 
-use crate::grid::Grid;
 use crate::limits::{Acceptance, Limit, Limits, Work};
 use crate::newton::Root;
 use crate::patch::{Crossing, Patch};
 use crate::planes::{DepthRange, Planes};
 use crate::scalar::Scalar;
-use crate::sweep::sweep;
+use crate::sweep::Along;
 
 /// A patch whose parallelepiped the testing ray meets.
 #[derive(Clone, Copy, Debug)]
@@ -23,12 +22,10 @@ pub struct Listed<'p, S> {
     pub owner: bool,
 }
 
-/// Sends a testing ray from `root` back to depth `nearest`, and calls `visit` with each patch of `patches` whose box it
-/// meets, once each, from the point toward the origin, as long as `visit` says so.
+/// Sends a testing ray from `root` back to depth `nearest`, and calls `visit` with each patch whose box it meets, once each, from the point toward the origin, as long as `visit` says so.
 #[inline(always)]
 pub fn testing_ray<S: Scalar>(
-    grid: &Grid<'_, S>,
-    patches: &[Patch<S>],
+    along: &impl Along<S>,
     planes: &Planes<S>,
     root: &Root<S>,
     nearest: S,
@@ -36,17 +33,11 @@ pub fn testing_ray<S: Scalar>(
     work: &mut Work,
     mut visit: impl FnMut(&Listed<'_, S>, &mut Work) -> Result<bool, Limit>,
 ) -> Result<(), Limit> {
-    let inverse = planes.inverse().map(|c| -c);
     let range = DepthRange { min: nearest, max: root.depth };
-    let walk = grid.walk(&planes.at(root.depth), &inverse, root.depth - nearest);
-    let mut go_on = true;
-    sweep(walk, patches, planes, limits, work, |patch, crossing, work| {
+    along.back(planes, &range, limits, work, |patch, crossing, work| {
         let owner = patch.domain().holds(root.u, root.v);
         // The owner's box holds the point; another's counts if it reaches between point and origin.
-        if go_on && (owner || reaches(crossing, &range)) {
-            go_on = visit(&Listed { patch, crossing, owner }, work)?;
-        }
-        Ok(if go_on { S::INFINITY } else { S::LEAST })
+        if owner || reaches(crossing, &range) { visit(&Listed { patch, crossing, owner }, work) } else { Ok(true) }
     })
 }
 
@@ -77,8 +68,7 @@ pub enum Verdict {
 ///
 /// Source: the paper's section "An Improvement of Bézier Clipping".
 pub fn verdict<S: Scalar>(
-    grid: &Grid<'_, S>,
-    patches: &[Patch<S>],
+    along: &impl Along<S>,
     planes: &Planes<S>,
     root: &Root<S>,
     nearest: S,
@@ -88,7 +78,7 @@ pub fn verdict<S: Scalar>(
     let mut owner = None;
     let mut critical = false;
     let mut other = None;
-    testing_ray(grid, patches, planes, root, nearest, limits, work, |listed, _| {
+    testing_ray(along, planes, root, nearest, limits, work, |listed, _| {
         if listed.owner {
             owner = Some(listed.patch.domain());
             critical = !met_at_most_once(listed.patch, listed.crossing, limits);
@@ -107,7 +97,7 @@ pub fn verdict<S: Scalar>(
 
 /// Whether the ray is inside the box anywhere in the range.
 #[inline(always)]
-fn reaches<S: Scalar>(crossing: &Crossing<S>, range: &DepthRange<S>) -> bool {
+pub(crate) fn reaches<S: Scalar>(crossing: &Crossing<S>, range: &DepthRange<S>) -> bool {
     crossing.overlaps(range)
         && match crossing.pierces() {
             Some([entrance, exit]) => entrance.depth <= range.max && exit.depth >= range.min,

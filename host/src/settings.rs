@@ -45,7 +45,7 @@ pub struct Flags {
     /// Voxels of a grid per patch in it
     #[arg(long, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true, help_heading = "Tracing")]
     pub grid_density: Option<f64>,
-    /// A bound by name; per ray: surfaces, nodes, patches, voxels, newton-steps, clip-steps, bisections, pending-domains;
+    /// A bound by name; per ray: surfaces, nodes, patches, voxels, spans, newton-steps, clip-steps, bisections, pending-domains;
     /// in preparation: depth, patches-per-surface, arena-bytes
     #[arg(long = "limit", value_name = "NAME=N", value_parser = named_limit, help_heading = "Tracing")]
     pub limits: Vec<(Name, u64)>,
@@ -116,6 +116,8 @@ pub enum Name {
     Patches,
     /// [`Limits::voxels`].
     Voxels,
+    /// [`Limits::spans`].
+    Spans,
     /// [`Limits::newton_steps`].
     NewtonSteps,
     /// [`Limits::clip_steps`].
@@ -133,11 +135,12 @@ pub enum Name {
 }
 
 /// Every bound with the name that it has on the command line, in `[trace.limits]` and in STATS.
-const NAMES: [(&str, Name); 11] = [
+const NAMES: [(&str, Name); 12] = [
     ("surfaces", Name::Surfaces),
     ("nodes", Name::Nodes),
     ("patches", Name::Patches),
     ("voxels", Name::Voxels),
+    ("spans", Name::Spans),
     ("newton-steps", Name::NewtonSteps),
     ("clip-steps", Name::ClipSteps),
     ("bisections", Name::Bisections),
@@ -190,6 +193,8 @@ pub struct Bounds {
     pub patches: u32,
     /// Voxels visited, per ray.
     pub voxels: u32,
+    /// Spans of a view's scan line looked at, per ray.
+    pub spans: u32,
     /// Evaluations of a surface, per ray.
     pub newton_steps: u32,
     /// Clips of an interval, per ray.
@@ -216,6 +221,7 @@ impl Default for Bounds {
             nodes: limits.nodes,
             patches: limits.patches,
             voxels: limits.voxels,
+            spans: limits.spans,
             newton_steps: limits.newton_steps,
             clip_steps: limits.clip_steps,
             bisections: limits.bisections,
@@ -236,6 +242,7 @@ impl Bounds {
             Name::Nodes => self.nodes = count,
             Name::Patches => self.patches = count,
             Name::Voxels => self.voxels = count,
+            Name::Spans => self.spans = count,
             Name::NewtonSteps => self.newton_steps = count,
             Name::ClipSteps => self.clip_steps = count,
             Name::Bisections => self.bisections = count,
@@ -353,6 +360,7 @@ impl Settings {
             nodes: self.limits.nodes,
             patches: self.limits.patches,
             voxels: self.limits.voxels,
+            spans: self.limits.spans,
             newton_steps: self.limits.newton_steps,
             clip_threshold: S::from_f64(self.clip_threshold),
             clip_steps: self.limits.clip_steps,

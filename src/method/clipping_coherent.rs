@@ -16,13 +16,16 @@ use super::{Remembered, keep_closest};
 use crate::clipper::{ClipRoom, Clipper};
 use crate::grid::Grids;
 use crate::limits::{GaveUp, Limit, Limits, Work};
+use crate::line::Line;
 use crate::newton::Root;
 use crate::patch::Patches;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::region::Order;
 use crate::scene::Scene;
+use crate::sweep::{Along, InGrid};
 use crate::verify::{Verdict, verdict};
+use crate::view::{View, ViewRay};
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
 ///
@@ -47,42 +50,74 @@ pub fn closest<P: Point>(
         let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
         let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
         let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
-        let previous = slot.recall(stamp);
-        let mut best = None;
-        // The closest root at all but those before the interval: what the next ray begins at.
-        let mut closest: Option<Root<P::Scalar>> = None;
-        let mut first = previous.is_some();
-        Clipper { surface, planes, limits, room }.roots(
-            Order::around(previous),
-            work,
-            |root, regions_wait, work| {
-                if planes.is_before_interval(root.depth) {
-                    return Ok(true);
-                }
-                keep_closest(&mut best, root, planes, &mut work.intersection_points);
-                if closest.is_none_or(|old| root.depth < old.depth) {
-                    closest = Some(root);
-                }
-                if !(first && regions_wait) {
-                    return Ok(true);
-                }
-                first = false;
-                match verdict(&grid, patches, planes, &root, range.min, limits, work)? {
-                    Verdict::Closest => {
-                        work.verified += 1;
-                        return Ok(false);
-                    }
-                    Verdict::Critical => work.refused_as_critical += 1,
-                    Verdict::Hidden { by_neighbour } => {
-                        work.refused_by_list += 1;
-                        work.refused_by_neighbour += u32::from(by_neighbour);
-                    }
-                }
-                Ok(true)
-            },
-        )?;
-        *slot = Remembered::of(closest, stamp);
-        // A root behind the closest hit so far, verified, proves a miss before it.
-        Ok(best)
+        let clipper = Clipper { surface, planes, limits, room };
+        search(clipper, &InGrid { grid, patches }, range.min, slot, stamp, work)
     })
+}
+
+/// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
+///
+/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::line::Order::Surfaces); it leads the testing ray, and no
+/// grid is walked. All else is as for [`closest`].
+pub fn closest_in_view<P: Point>(
+    view: &View<'_, P>,
+    line: &mut Line<'_, P::Scalar>,
+    memory: &mut [Remembered<P::Scalar>],
+    scan_line: u32,
+    ray: &ViewRay<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    room: &mut ClipRoom<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    let stamp = scan_line.wrapping_add(1);
+    line.closest(view, ray, limits, work, |surface, planes, range, along, work| {
+        let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
+        search(Clipper { surface, planes, limits, room }, along, range.min, slot, stamp, work)
+    })
+}
+
+/// The closest root on one surface in the ray's interval, and what to remember of it.
+#[inline(always)]
+fn search<P: Point>(
+    mut clipper: Clipper<'_, '_, '_, P>,
+    along: &impl Along<P::Scalar>,
+    nearest: P::Scalar,
+    slot: &mut Remembered<P::Scalar>,
+    stamp: u32,
+    work: &mut Work,
+) -> Result<Option<Root<P::Scalar>>, Limit> {
+    let (planes, limits) = (clipper.planes, clipper.limits);
+    let previous = slot.recall(stamp);
+    let mut best = None;
+    // The closest root at all but those before the interval: what the next ray begins at.
+    let mut closest: Option<Root<P::Scalar>> = None;
+    let mut first = previous.is_some();
+    clipper.roots(Order::around(previous), work, |root, regions_wait, work| {
+        if planes.is_before_interval(root.depth) {
+            return Ok(true);
+        }
+        keep_closest(&mut best, root, planes, &mut work.intersection_points);
+        if closest.is_none_or(|old| root.depth < old.depth) {
+            closest = Some(root);
+        }
+        if !(first && regions_wait) {
+            return Ok(true);
+        }
+        first = false;
+        match verdict(along, planes, &root, nearest, limits, work)? {
+            Verdict::Closest => {
+                work.verified += 1;
+                return Ok(false);
+            }
+            Verdict::Critical => work.refused_as_critical += 1,
+            Verdict::Hidden { by_neighbour } => {
+                work.refused_by_list += 1;
+                work.refused_by_neighbour += u32::from(by_neighbour);
+            }
+        }
+        Ok(true)
+    })?;
+    *slot = Remembered::of(closest, stamp);
+    // A root behind the closest hit so far, verified, proves a miss before it.
+    Ok(best)
 }

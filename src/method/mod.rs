@@ -4,10 +4,15 @@
 
 pub mod clipping;
 pub mod clipping_coherent;
+pub mod clipping_predicted;
 mod collect;
+mod follow;
 pub mod newton;
 pub mod newton_coherent;
+pub mod newton_predicted;
 mod starts;
+
+pub use follow::{Followed, Following};
 
 use crate::bernstein::{Basis, BasisView};
 use crate::clipper::ClipRoom;

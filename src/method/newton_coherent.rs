@@ -13,17 +13,19 @@
 
 use super::starts::{First, from_patch};
 use super::{Remembered, ScratchView, keep_closest};
-use crate::grid::{Grid, Grids};
+use crate::grid::Grids;
 use crate::limits::{GaveUp, Limit, Limits, Work};
+use crate::line::Line;
 use crate::newton::{Root, Solver};
-use crate::patch::{Patch, Patches};
+use crate::patch::Patches;
 use crate::planes::DepthRange;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
-use crate::sweep::sweep;
+use crate::sweep::{Along, InGrid};
 use crate::verify::{met_at_most_once, testing_ray};
+use crate::view::{View, ViewRay};
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
 ///
@@ -49,27 +51,58 @@ pub fn closest<P: Point>(
         let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
         let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
         let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
-        let mut search = Search { solver, patches, grid, range };
-        let found = match search.resume(slot.recall(stamp), work)? {
-            Some(root) => Some(root),
-            None => search.in_full(work)?,
-        };
-        *slot = Remembered::of(found, stamp);
-        // A point behind the closest hit so far, or behind the interval, verified, proves a miss before it. It is not held
-        // against the surface's box: a root may lie off by Newton's tolerance, which is more than a thin box's padding.
-        Ok(found.filter(|root| planes.t_in_interval(root.depth).is_some()))
+        Search { solver, along: &InGrid { grid, patches }, range }.run(slot, stamp, work)
+    })
+}
+
+/// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
+///
+/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::line::Order::Surfaces); instead of walking grids, the
+/// full search and the testing ray are led by it. All else is as for [`closest`].
+pub fn closest_in_view<P: Point>(
+    view: &View<'_, P>,
+    line: &mut Line<'_, P::Scalar>,
+    memory: &mut [Remembered<P::Scalar>],
+    scan_line: u32,
+    ray: &ViewRay<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    let stamp = scan_line.wrapping_add(1);
+    line.closest(view, ray, limits, work, |surface, planes, range, along, work| {
+        let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
+        let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
+        Search { solver, along, range }.run(slot, stamp, work)
     })
 }
 
 /// One ray and one surface.
-struct Search<'a, 's, 'm, P: Point> {
+struct Search<'a, 's, 'm, P: Point, A> {
     solver: Solver<'a, 's, 'm, P>,
-    patches: &'m [Patch<P::Scalar>],
-    grid: Grid<'m, P::Scalar>,
+    along: &'a A,
     range: DepthRange<P::Scalar>,
 }
 
-impl<P: Point> Search<'_, '_, '_, P> {
+impl<P: Point, A: Along<P::Scalar>> Search<'_, '_, '_, P, A> {
+    /// The closest point in the ray's interval, and what to remember of it.
+    #[inline(always)]
+    fn run(
+        mut self,
+        slot: &mut Remembered<P::Scalar>,
+        stamp: u32,
+        work: &mut Work,
+    ) -> Result<Option<Root<P::Scalar>>, Limit> {
+        let found = match self.resume(slot.recall(stamp), work)? {
+            Some(root) => Some(root),
+            None => self.in_full(work)?,
+        };
+        *slot = Remembered::of(found, stamp);
+        // A point behind the closest hit so far, or behind the interval, verified, proves a miss before it. It is not held
+        // against the surface's box: a root may lie off by Newton's tolerance, which is more than a thin box's padding.
+        Ok(found.filter(|root| self.solver.planes.t_in_interval(root.depth).is_some()))
+    }
+
     /// The point found from the previous one's (u, v), verified or replaced by a closer one; `None` if the surface has to
     /// be searched in full.
     fn resume(&mut self, previous: Option<[P::Scalar; 2]>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
@@ -88,12 +121,12 @@ impl<P: Point> Search<'_, '_, '_, P> {
 
     /// The testing ray: the point itself if it is the closest, a closer one that it leads to, or `None` if it cannot tell.
     fn verify(&mut self, point: Root<P::Scalar>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
-        let Search { solver, patches, grid, range } = self;
+        let Search { solver, along, range } = self;
         let (planes, limits) = (solver.planes, solver.limits);
         let mut closest = Some(point);
         let (mut owners, mut alone) = (0_u32, true);
         work.intersection_points += u32::from(planes.t_in_interval(point.depth).is_some());
-        testing_ray(grid, patches, planes, &point, range.min, limits, work, |listed, work| {
+        testing_ray(*along, planes, &point, range.min, limits, work, |listed, work| {
             if listed.owner {
                 owners += 1;
                 if met_at_most_once(listed.patch, listed.crossing, limits) {
@@ -117,23 +150,20 @@ impl<P: Point> Search<'_, '_, '_, P> {
         Ok(closest)
     }
 
-    /// The closest root by a search of the grid, front to back, that ends where no later voxel can hold a closer one.
+    /// The closest root by a search along the ray, front to back, that ends where nothing farther on can hold a closer one.
     fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         let (planes, limits) = (self.solver.planes, self.solver.limits);
         work.full_searches += 1;
-        let Some((walk, begin)) = self.grid.enter(planes, &self.range) else {
-            return Ok(None);
-        };
-        let Search { solver, patches, range, .. } = self;
+        let Search { solver, along, range } = self;
         let mut best: Option<Root<P::Scalar>> = None;
-        sweep(walk, patches, planes, limits, work, |patch, crossing, work| {
+        along.ahead(planes, range, limits, work, |patch, crossing, work| {
             if crossing.overlaps(range) {
                 if let Some(root) = from_patch(solver, patch, crossing, First::AsCritical, work)? {
                     keep_closest(&mut best, root, planes, &mut work.intersection_points);
                 }
             }
             // A root counts only once the walk has come to it: a patch not met yet may hold a closer one.
-            Ok(best.map_or(P::Scalar::INFINITY, |root| root.depth - begin))
+            Ok(best.map_or(P::Scalar::INFINITY, |root| root.depth))
         })?;
         Ok(best)
     }

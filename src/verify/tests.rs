@@ -4,11 +4,12 @@ use super::*;
 use crate::arena::Arena;
 use crate::domain::Domain;
 use crate::frame::{Aabb, Frame};
-use crate::grid::GridSlot;
+use crate::grid::{Grid, GridSlot};
 use crate::measure::Measure;
 use crate::point::Plain;
 use crate::ray::Interval;
 use crate::surface::Net;
+use crate::sweep::InGrid;
 use std::vec::Vec;
 
 /// Sheets across z at these heights, each a patch of its own; of the last one the domain is the half beyond u = 1/2.
@@ -36,10 +37,11 @@ fn the_list_holds_what_lies_between_point_and_origin_from_the_point_on() {
         let depth = height - planes.origin()[2];
         let root = Root { u, v: 0.5, depth, grazing: false };
         let (mut listed, mut work) = (Vec::new(), Work::default());
-        let end = testing_ray(&grid, &patches, &planes, &root, nearest, limits, &mut work, |item, _| {
-            listed.push((patches.iter().position(|p| core::ptr::eq(p, item.patch)).unwrap(), item.owner));
-            Ok(true)
-        });
+        let end =
+            testing_ray(&InGrid { grid, patches: &patches }, &planes, &root, nearest, limits, &mut work, |item, _| {
+                listed.push((patches.iter().position(|p| core::ptr::eq(p, item.patch)).unwrap(), item.owner));
+                Ok(true)
+            });
         (end, listed, work)
     };
     let limits = Limits::default();
@@ -68,10 +70,11 @@ fn the_list_holds_what_lies_between_point_and_origin_from_the_point_on() {
     // An error of the visitor ends it.
     let root = Root { u: 0.75, v: 0.5, depth: 0.1 - planes.origin()[2], grazing: false };
     let mut visits = 0;
-    let end = testing_ray(&grid, &patches, &planes, &root, 0.0, &limits, &mut Work::default(), |_, _| {
-        visits += 1;
-        Err(Limit::NewtonSteps)
-    });
+    let end =
+        testing_ray(&InGrid { grid, patches: &patches }, &planes, &root, 0.0, &limits, &mut Work::default(), |_, _| {
+            visits += 1;
+            Err(Limit::NewtonSteps)
+        });
     assert_eq!((end, visits), (Err(Limit::NewtonSteps), 1));
 }
 
@@ -95,7 +98,7 @@ fn a_point_is_the_closest_or_critical_or_hidden_by_a_neighbour_or_by_another() {
         let (planes, range) = frame.enter(&ray, &Interval::ahead()).unwrap();
         let root = Root { u, v: 0.5, depth: 0.1 - planes.origin()[2], grazing: false };
         let limits = Limits { critical_factor: factor, ..Limits::default() };
-        verdict(&grid, patches, &planes, &root, range.min, &limits, &mut Work::default()).unwrap()
+        verdict(&InGrid { grid, patches }, &planes, &root, range.min, &limits, &mut Work::default()).unwrap()
     };
     let owner = sheet(0.1, high);
     assert_eq!(ask(&[owner], 0.75, 1.0), Verdict::Closest);

@@ -29,6 +29,7 @@ use patchray::subdivide::{
 };
 use patchray::surface::{Direction, Net, NetError, Surface};
 use patchray::tree::{Descent, Tree};
+use patchray::sweep::InGrid;
 use patchray::verify::{Verdict, testing_ray, verdict};
 use patchray::walk::{Voxel, Walk};
 
@@ -722,11 +723,12 @@ unsafe extern "C" fn verify<P: Point>(
     let Some(grid) = grids.of_surface(surface) else {
         return;
     };
-    out.0 = testing_ray(&grid, patches, planes, root, nearest, limits, work, |listed, _| {
+    let along = InGrid { grid, patches };
+    out.0 = testing_ray(&along, planes, root, nearest, limits, work, |listed, _| {
         *owners = owners.wrapping_add(u32::from(listed.owner));
         Ok(*owners < limits.patches)
     });
-    out.1 = verdict(&grid, patches, planes, root, nearest, limits, work);
+    out.1 = verdict(&along, planes, root, nearest, limits, work);
 }
 
 /// An arena asked for anything.

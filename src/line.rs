@@ -1,0 +1,479 @@
+//! A scan line of a view: which surfaces or patches a ray can meet, from where it is in the line.
+//!
+//! Each surface or patch that can be seen in the line's rows has a span of x there. Spans hang in buckets by where they
+//! begin, so that nothing is sorted. While rays go along the line, the spans around them are kept in a short list, in the
+//! order in which methods search; a ray that goes back builds the list anew, so that any order of rays gives the same answers.
+//!
+//! Ours: an active list over a scan line, as scan conversion of polygons has had since C. Wylie, G. Romney, D. Evans and
+//! A. Erdahl, "Half-tone perspective drawings by computer", AFIPS 1967.
+
+use crate::arena::{Arena, Need};
+use crate::limits::{GaveUp, Limit, Limits, Work, spend};
+use crate::newton::Root;
+use crate::patch::{Crossing, Patch};
+use crate::planes::{DepthRange, Planes};
+use crate::point::Point;
+use crate::ray::Hit;
+use crate::scalar::Scalar;
+use crate::surface::Surface;
+use crate::sweep::Along;
+use crate::view::{RUN, Sight, View, ViewRay};
+
+/// Where in a scan line a surface or a patch can be seen: a slot of lent memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Span<S> {
+    /// The least and the largest x.
+    x: [S; 2],
+    /// The least depth.
+    near: S,
+    /// The least depth of the surface that it is of: spans of one surface stand together if ordered by it.
+    front: S,
+    surface: u32,
+    /// The patch's number in the scene, if it is of a patch.
+    patch: u32,
+    /// The next one of those that begin in the same bucket, or [`NONE`].
+    next: u32,
+    /// The bucket in which it ends.
+    last: u32,
+}
+
+impl<S: Scalar> Span<S> {
+    /// What a slot holds before it is filled.
+    pub const EMPTY: Self =
+        Span { x: [S::ZERO; 2], near: S::ZERO, front: S::ZERO, surface: 0, patch: 0, next: NONE, last: 0 };
+
+    #[inline(always)]
+    fn holds(&self, x: S) -> bool {
+        self.x[0] <= x && x <= self.x[1]
+    }
+
+    /// Whether it comes before another one. No two are equal, so that the list is the same in whatever order it was built.
+    #[inline(always)]
+    fn is_before(&self, other: &Self, order: Order) -> bool {
+        if order == Order::Surfaces {
+            if self.front != other.front {
+                return self.front < other.front;
+            }
+            if self.surface != other.surface {
+                return self.surface < other.surface;
+            }
+        }
+        self.near < other.near || (self.near == other.near && self.patch < other.patch)
+    }
+}
+
+const NONE: u32 = u32::MAX;
+
+/// In which order spans are searched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// Surface by surface, those in front first, and in each the nearest patch first.
+    Surfaces,
+    /// The nearest patch first, of whatever surface.
+    Depth,
+}
+
+/// Lent memory for a scan line.
+#[derive(Debug)]
+pub struct LineMemory<'m, S> {
+    /// The surfaces or patches that can be seen in the line: at most as many as there are.
+    pub spans: &'m mut [Span<S>],
+    /// As many slots as `spans` holds.
+    pub active: &'m mut [u32],
+    /// Buckets, at least one: any number will do. About as many as there are spans is best; fewer make the list be rebuilt
+    /// from longer chains, more are cleared and passed for nothing.
+    pub buckets: &'m mut [u32],
+}
+
+/// Slots that a scan line needs, and what it was lent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineNeeds {
+    /// Of [`LineMemory::spans`].
+    pub spans: Need,
+    /// Of [`LineMemory::active`].
+    pub active: Need,
+    /// Of [`LineMemory::buckets`].
+    pub buckets: Need,
+}
+
+/// The part of a view's image that a scan line's rays are of: least and largest x, least and largest y. For rays in one row
+/// both y are the same; where rays are jittered, they are the row's edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window<S> {
+    /// Least and largest x.
+    pub x: [S; 2],
+    /// Least and largest y.
+    pub y: [S; 2],
+}
+
+/// A scan line of a view, ready for its rays.
+#[derive(Debug)]
+pub struct Line<'m, S> {
+    window: Window<S>,
+    spans: &'m [Span<S>],
+    buckets: &'m [u32],
+    /// Numbers of spans that may hold the ray, in the order of search.
+    active: &'m mut [u32],
+    /// How many of them there are.
+    count: usize,
+    order: Order,
+    /// Buckets per unit of x.
+    per_unit: S,
+    /// The bucket that the list is of; none before the first ray.
+    bucket: Option<u32>,
+}
+
+impl<'m, S: Scalar> Line<'m, S> {
+    /// The spans of a view's surfaces: for methods without patches.
+    pub fn of_surfaces<P: Point<Scalar = S>>(
+        view: &View<'_, P>,
+        window: Window<S>,
+        memory: LineMemory<'m, S>,
+    ) -> Result<Self, LineNeeds> {
+        Line::fill(window, Order::Surfaces, memory, |filling| {
+            for (surface, sight) in (0_u32..).zip(view.surfaces()) {
+                filling.add(sight, sight.near, surface, 0);
+            }
+        })
+    }
+
+    /// The spans of a view's patches.
+    pub fn of_patches<P: Point<Scalar = S>>(
+        view: &View<'_, P>,
+        window: Window<S>,
+        order: Order,
+        memory: LineMemory<'m, S>,
+    ) -> Result<Self, LineNeeds> {
+        let Window { y: [low, high], .. } = window;
+        Line::fill(window, order, memory, |filling| {
+            for (surface, sight) in (0_u32..).zip(view.surfaces()) {
+                let [from, to] = sight.outline.rows();
+                if !(from <= high && low <= to) {
+                    continue;
+                }
+                let Some((first, sights, runs)) = view.patches_of(surface as usize) else {
+                    continue;
+                };
+                for ((number, run), &[from, to]) in (first..).step_by(RUN).zip(sights.chunks(RUN)).zip(runs) {
+                    if from <= high && low <= to {
+                        for (patch, of_patch) in (number..).zip(run) {
+                            filling.add(of_patch, sight.near, surface, patch);
+                        }
+                    }
+                }
+            }
+        })
+    }
+
+    #[inline(always)]
+    fn fill(
+        window: Window<S>,
+        order: Order,
+        memory: LineMemory<'m, S>,
+        all: impl FnOnce(&mut Filling<'m, S>),
+    ) -> Result<Self, LineNeeds> {
+        let LineMemory { spans, active, buckets } = memory;
+        buckets.fill(NONE);
+        let [begin, end] = window.x;
+        let per_unit = if begin < end { S::from_u32(buckets.len() as u32) / (end - begin) } else { S::ZERO };
+        let buckets_given = buckets.len();
+        let mut filling = Filling { window, spans: Arena::new(spans), buckets, per_unit };
+        all(&mut filling);
+        let Filling { spans, buckets, .. } = filling;
+        let needs = LineNeeds {
+            spans: spans.need(),
+            active: Need { needed: spans.len(), given: active.len() },
+            buckets: Need { needed: 1, given: buckets_given },
+        };
+        if !(needs.spans.met() && needs.active.met() && needs.buckets.met()) {
+            return Err(needs);
+        }
+        Ok(Line { window, spans: spans.finish(), buckets, active, count: 0, order, per_unit, bucket: None })
+    }
+
+    /// Brings the list to a ray's place in the line.
+    #[inline(always)]
+    fn go_to(&mut self, ray: &ViewRay<S>, limits: &Limits<S>, work: &mut Work) -> Result<(), Limit> {
+        let Window { x: [left, right], y: [low, high] } = self.window;
+        let [x, y] = ray.place;
+        if !(left <= x && x <= right && low <= y && y <= high) {
+            return Err(Limit::Line);
+        }
+        let bucket = bucket_of(x - left, self.per_unit, self.buckets.len());
+        if self.bucket == Some(bucket) { Ok(()) } else { self.rebuild(bucket, limits, work) }
+    }
+
+    /// The list of a bucket: what an earlier one's holds and goes on to this one, and what begins in between.
+    #[inline(never)]
+    fn rebuild(&mut self, bucket: u32, limits: &Limits<S>, work: &mut Work) -> Result<(), Limit> {
+        // Nothing, until it is complete: the budget may run out.
+        let before = self.bucket.take().filter(|&before| before < bucket);
+        let kept = if before.is_some() { self.count } else { 0 };
+        self.count = 0;
+        for k in 0..kept {
+            let number = self.active.get(k).copied().ok_or(Limit::Slot)?;
+            if self.span(number)?.last >= bucket {
+                *self.active.get_mut(self.count).ok_or(Limit::Slot)? = number;
+                self.count += 1;
+            }
+        }
+        for begins in before.map_or(0, |before| before + 1)..=bucket {
+            let mut next = self.buckets.get(begins as usize).copied().ok_or(Limit::Slot)?;
+            // Ends: each span names one that was filled before it.
+            while next != NONE {
+                spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
+                let span = self.span(next)?;
+                if span.last >= bucket {
+                    self.insert(next, limits, work)?;
+                }
+                next = span.next;
+            }
+        }
+        self.bucket = Some(bucket);
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn span(&self, number: u32) -> Result<&'m Span<S>, Limit> {
+        self.spans.get(number as usize).ok_or(Limit::Slot)
+    }
+
+    /// Puts a span into the list, in order.
+    #[inline(always)]
+    fn insert(&mut self, number: u32, limits: &Limits<S>, work: &mut Work) -> Result<(), Limit> {
+        let span = self.span(number)?;
+        let mut at = self.count;
+        // Ends: `at` falls.
+        while let Some(before) = at.checked_sub(1) {
+            spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
+            let other = self.active.get(before).copied().ok_or(Limit::Slot)?;
+            if !span.is_before(self.span(other)?, self.order) {
+                break;
+            }
+            *self.active.get_mut(at).ok_or(Limit::Slot)? = other;
+            at = before;
+        }
+        *self.active.get_mut(at).ok_or(Limit::Slot)? = number;
+        self.count += 1;
+        Ok(())
+    }
+
+    /// The closest hit of a ray over all surfaces that the line holds, those in front first; a line of
+    /// [`Order::Surfaces`].
+    ///
+    /// `search` is given a surface, the ray's planes, the range of depths in which a root matters and, if the line is one of
+    /// patches, the patches that the ray may meet; it returns the closest root that it finds. `work` is set to what this call
+    /// did.
+    #[inline(always)]
+    pub fn closest<'v, P: Point<Scalar = S>>(
+        &mut self,
+        view: &View<'v, P>,
+        ray: &ViewRay<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut search: impl FnMut(
+            &Surface<'v, P>,
+            &Planes<S>,
+            DepthRange<S>,
+            &InLine<'_, S>,
+            &mut Work,
+        ) -> Result<Option<Root<S>>, Limit>,
+    ) -> Result<Option<Hit<S>>, GaveUp<S>> {
+        *work = Work::default();
+        let mut best: Option<(Root<S>, u32)> = None;
+        let ended = self.surfaces(view.patches(), ray, limits, work, |number, near, in_line, work| {
+            let ViewRay { planes, range, .. } = ray;
+            let farthest = best.map_or(range.max, |(root, _)| root.depth);
+            if !(near <= farthest) {
+                return Ok(());
+            }
+            spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
+            let surface = view.surface(number as usize).ok_or(Limit::Slot)?;
+            let within = DepthRange { min: range.min, max: farthest };
+            if let Some(root) = search(&surface, planes, within, &in_line, work)? {
+                // As in `Scene::closest`.
+                let closer = |(old, other): (Root<S>, u32)| {
+                    root.depth < old.depth || (root.depth == old.depth && number < other)
+                };
+                if best.is_none_or(closer) {
+                    best = Some((root, number));
+                }
+            }
+            Ok(())
+        });
+        let best = best.map(|(root, surface)| root.hit(surface, ray.planes.t(root.depth)));
+        match ended {
+            Ok(()) => Ok(best),
+            Err(limit) => Err(GaveUp { limit, best }),
+        }
+    }
+
+    /// The spans that may hold a ray.
+    #[inline(always)]
+    pub(crate) fn nearby<'l>(
+        &'l mut self,
+        patches: &'l [Patch<S>],
+        ray: &ViewRay<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+    ) -> Result<InLine<'l, S>, Limit> {
+        self.go_to(ray, limits, work)?;
+        Ok(InLine {
+            spans: self.spans,
+            of_surface: self.active.get(..self.count).unwrap_or(&[]),
+            x: ray.place[0],
+            patches,
+        })
+    }
+
+    /// Each surface of which a span holds the ray, with the least depth of those spans.
+    #[inline(always)]
+    fn surfaces(
+        &mut self,
+        patches: &[Patch<S>],
+        ray: &ViewRay<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(u32, S, InLine<'_, S>, &mut Work) -> Result<(), Limit>,
+    ) -> Result<(), Limit> {
+        self.go_to(ray, limits, work)?;
+        let x = ray.place[0];
+        let mut rest = self.active.get(..self.count).unwrap_or(&[]);
+        // Ends: each turn takes at least one span away.
+        while let Some((&first, after)) = rest.split_first() {
+            spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
+            let span = self.span(first)?;
+            if !span.holds(x) {
+                rest = after;
+                continue;
+            }
+            let same =
+                after.iter().take_while(|&&k| self.spans.get(k as usize).is_some_and(|k| k.surface == span.surface));
+            let count = 1 + same.count();
+            let Some((of_surface, others)) = rest.split_at_checked(count) else {
+                break;
+            };
+            visit(span.surface, span.near, InLine { spans: self.spans, of_surface, x, patches }, work)?;
+            rest = others;
+        }
+        Ok(())
+    }
+}
+
+/// The spans of one surface around a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct InLine<'l, S> {
+    spans: &'l [Span<S>],
+    of_surface: &'l [u32],
+    x: S,
+    /// The patches of the view.
+    patches: &'l [Patch<S>],
+}
+
+impl<S: Scalar> InLine<'_, S> {
+    /// Calls `visit` with each patch whose parallelepiped the ray meets, and its surface's number: in the order of the list, up to
+    /// the depth that `visit` returned last.
+    #[inline(always)]
+    pub(crate) fn visit(
+        &self,
+        planes: &Planes<S>,
+        mut farthest: S,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(u32, &Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
+    ) -> Result<(), Limit> {
+        for &number in self.of_surface {
+            spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
+            let span = self.spans.get(number as usize).ok_or(Limit::Slot)?;
+            if !span.holds(self.x) {
+                continue;
+            }
+            if !(span.near <= farthest) {
+                break;
+            }
+            let patch = self.patches.get(span.patch as usize).ok_or(Limit::Slot)?;
+            spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
+            if let Some(crossing) = patch.bounds().crossing(planes) {
+                farthest = visit(span.surface, patch, &crossing, work)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the list holds a span of the surface around the ray.
+    #[inline(always)]
+    pub(crate) fn holds_surface(&self, surface: u32) -> bool {
+        let spans = self.of_surface.iter().filter_map(|&number| self.spans.get(number as usize));
+        spans.into_iter().any(|span| span.surface == surface && span.holds(self.x))
+    }
+
+    /// The surface of the first span around the ray.
+    #[inline(always)]
+    pub(crate) fn first_surface(&self) -> Option<u32> {
+        let spans = self.of_surface.iter().filter_map(|&number| self.spans.get(number as usize));
+        spans.into_iter().find(|span| span.holds(self.x)).map(|span| span.surface)
+    }
+}
+
+impl<S: Scalar> Along<S> for InLine<'_, S> {
+    #[inline(always)]
+    fn ahead(
+        &self,
+        planes: &Planes<S>,
+        range: &DepthRange<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
+    ) -> Result<(), Limit> {
+        self.visit(planes, range.max, limits, work, |_, patch, crossing, work| visit(patch, crossing, work))
+    }
+
+    /// Front to back as well: the way to the nearest patch in the line is short.
+    #[inline(always)]
+    fn back(
+        &self,
+        planes: &Planes<S>,
+        range: &DepthRange<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<bool, Limit>,
+    ) -> Result<(), Limit> {
+        self.visit(planes, range.max, limits, work, |_, patch, crossing, work| {
+            Ok(if visit(patch, crossing, work)? { range.max } else { S::LEAST })
+        })
+    }
+}
+
+/// A line being filled.
+struct Filling<'m, S> {
+    window: Window<S>,
+    spans: Arena<'m, Span<S>>,
+    buckets: &'m mut [u32],
+    per_unit: S,
+}
+
+impl<S: Scalar> Filling<'_, S> {
+    /// Adds what can be seen of a surface or patch in the window, if anything.
+    #[inline(always)]
+    fn add(&mut self, sight: &Sight<S>, front: S, surface: u32, patch: u32) {
+        let [left, right] = self.window.x;
+        let Some(x) = sight.outline.across(self.window.y).filter(|x| x[0] <= right && left <= x[1]) else {
+            return;
+        };
+        let buckets = self.buckets.len();
+        let [first, last] = x.map(|x| bucket_of(x - left, self.per_unit, buckets));
+        let number = self.spans.len() as u32;
+        let next = self.buckets.get_mut(first as usize).map_or(NONE, |head| core::mem::replace(head, number));
+        self.spans.push(Span { x, near: sight.near, front, surface, patch, next, last });
+    }
+}
+
+/// The bucket of a place this far from the window's left edge: the first one for all before it, the last one for all behind.
+#[inline(always)]
+fn bucket_of<S: Scalar>(from_left: S, per_unit: S, buckets: usize) -> u32 {
+    (from_left * per_unit).to_u32().min((buckets as u32).saturating_sub(1))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+//! Coherence memory that predicts: where on a surface the next ray of a scan line will meet it.
+//!
+//! Source: the two-step method of J. C. Adams and F. Bashforth (1883), for steps of uneven length.
+
+use crate::limits::Work;
+use crate::newton::{Local, Root};
+use crate::planes::Planes;
+use crate::scalar::Scalar;
+use crate::view::ViewRay;
+
+/// What the previous ray of a scan line left on one surface: a slot of memory that the caller lends, one per surface and
+/// thread.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Followed<S> {
+    /// (u, v) of its point.
+    at: [S; 2],
+    /// By how much they change per unit of x.
+    rate: [S; 2],
+    /// Half of what that changes by per unit of x.
+    bend: [S; 2],
+    /// Where in the line the ray was.
+    x: S,
+    /// The scan line that it belongs to, plus one; 0 holds nothing. So nothing need be cleared between scan lines.
+    stamp: u32,
+}
+
+/// Coherence memory of one thread.
+#[derive(Debug)]
+pub struct Following<'m, S> {
+    /// A slot per surface. What they hold at first does not matter, but for speed.
+    pub slots: &'m mut [Followed<S>],
+    /// The surface that the previous ray hit.
+    pub last: u32,
+}
+
+impl<S: Scalar> Followed<S> {
+    /// What a slot holds before it is filled.
+    pub const EMPTY: Self = Followed { at: [S::ZERO; 2], rate: [S::ZERO; 2], bend: [S::ZERO; 2], x: S::ZERO, stamp: 0 };
+
+    /// Where the ray at `x` of scan line `stamp` is predicted to meet the surface; `None` without memory of that line.
+    #[inline(always)]
+    pub(super) fn predict(&self, x: S, stamp: u32) -> Option<[S; 2]> {
+        if self.stamp != stamp || stamp == 0 {
+            return None;
+        }
+        let step = x - self.x;
+        Some(core::array::from_fn(|k| self.at[k] + step * (self.rate[k] + step * self.bend[k])))
+    }
+
+    /// Keeps what a ray found.
+    #[inline(always)]
+    pub(super) fn keep(&mut self, Best { root, local, .. }: &Best<S>, ray: &ViewRay<S>, stamp: u32) {
+        let [x, _] = ray.place;
+        let rate = local.as_ref().and_then(|local| local.rate(root.depth + ray.ahead, ray.turning));
+        let step = x - self.x;
+        // Without an earlier rate in this line, or none that is known, nothing is said of how it changes.
+        let bend = match rate {
+            Some(rate) if self.stamp == stamp && self.rate != [S::ZERO; 2] && step != S::ZERO => {
+                let share = S::HALF / step;
+                core::array::from_fn(|k| (rate[k] - self.rate[k]) * share)
+            }
+            _ => [S::ZERO; 2],
+        };
+        *self = Followed { at: [root.u, root.v], rate: rate.unwrap_or([S::ZERO; 2]), bend, x, stamp };
+    }
+}
+
+/// The closest root so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Best<S> {
+    pub(super) root: Root<S>,
+    pub(super) surface: u32,
+    /// The surface there to first order, if it is known.
+    pub(super) local: Option<Local<S>>,
+}
+
+impl<S: Scalar> Best<S> {
+    /// Counts a root as an intersection point if it lies in the ray's interval, and keeps it if it is closer; of equal ones that
+    /// of the lower surface, so that the answer does not depend on the order of search.
+    #[inline(always)]
+    pub(super) fn keep(best: &mut Option<Self>, found: Self, planes: &Planes<S>, work: &mut Work) {
+        let Best { root: Root { depth, .. }, surface, .. } = found;
+        if planes.t_in_interval(depth).is_some() {
+            work.intersection_points += 1;
+            let closer = |old: &Self| depth < old.root.depth || (depth == old.root.depth && surface < old.surface);
+            if best.as_ref().is_none_or(closer) {
+                *best = Some(found);
+            }
+        }
+    }
+}

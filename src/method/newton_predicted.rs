@@ -1,0 +1,169 @@
+//! The improved numerical method made to pay on today's machines: for the rays of a view.
+//!
+//! As in [`newton_coherent`](super::newton_coherent), Newton's method starts from what the previous ray left, and a testing
+//! ray verifies the point that it finds. Departures from the paper, each for speed:
+//! - the start is predicted: the previous (u, v) moves on by the derivatives that the last Newton steps gave;
+//! - only the surface that the previous ray hit is tried first, and the testing ray meets the patches of all surfaces, so
+//!   that one verification answers the ray; it ends at the closest point so far;
+//! - a search in full goes front to back over the patches of all surfaces, and ends where no other can be closer.
+//!
+//! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm".
+
+use super::ScratchView;
+use super::follow::{Best, Following};
+use super::starts::{First, from_patch};
+use crate::limits::{GaveUp, Limit, Limits, Work};
+use crate::line::{InLine, Line};
+use crate::newton::Solver;
+use crate::planes::DepthRange;
+use crate::point::Point;
+use crate::ray::Hit;
+use crate::scalar::Scalar;
+use crate::verify::{met_at_most_once, reaches};
+use crate::view::{View, ViewRay};
+
+/// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
+///
+/// `line` is the ray's, one of patches in [`Order::Depth`](crate::line::Order::Depth). `memory` is lent, and to be left alone
+/// between rays of one scan line. `scan_line` numbers the line: a number that no earlier line with this memory had begins
+/// with no coherence (at most 2³² − 2). `work` is set to what the call did.
+pub fn closest_in_view<P: Point>(
+    view: &View<'_, P>,
+    line: &mut Line<'_, P::Scalar>,
+    memory: &mut Following<'_, P::Scalar>,
+    scan_line: u32,
+    ray: &ViewRay<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    *work = Work::default();
+    let stamp = scan_line.wrapping_add(1);
+    let mut best = None;
+    let ended = closest_so_far(view, line, memory, stamp, ray, limits, scratch, &mut best, work);
+    let best = best.map(|Best { root, surface, .. }| root.hit(surface, ray.planes.t(root.depth)));
+    match ended {
+        Ok(()) => Ok(best),
+        Err(limit) => Err(GaveUp { limit, best }),
+    }
+}
+
+#[inline(always)]
+fn closest_so_far<P: Point>(
+    view: &View<'_, P>,
+    line: &mut Line<'_, P::Scalar>,
+    memory: &mut Following<'_, P::Scalar>,
+    stamp: u32,
+    ray: &ViewRay<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P>,
+    best: &mut Option<Best<P::Scalar>>,
+    work: &mut Work,
+) -> Result<(), Limit> {
+    let (planes, x) = (&ray.planes, ray.place[0]);
+    let last = core::mem::replace(&mut memory.last, u32::MAX);
+    let nearby = line.nearby(view.patches(), ray, limits, work)?;
+    let Some(first) = nearby.first_surface() else {
+        return Ok(());
+    };
+    let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(x, stamp));
+    let start = start.filter(|_| nearby.holds_surface(last));
+    let surface = view.surface(if start.is_some() { last } else { first } as usize).ok_or(Limit::Slot)?;
+    let solver = Solver::new(&surface, planes, limits, scratch.flat, &mut scratch.basis);
+    let mut search = Search { view, ray, nearby, solver };
+    let mut resumed = false;
+    if let Some(start) = start {
+        resumed = search.resume(start, best, work)?;
+        work.start_failed += u32::from(!resumed);
+    }
+    if !resumed {
+        *best = None;
+        search.in_full(best, work)?;
+    }
+    if let Some(best) = best {
+        // Of a root that a patch led to, for the next ray's sake.
+        if best.local.is_none() {
+            search.solver.turn_to(&view.surface(best.surface as usize).ok_or(Limit::Slot)?);
+            best.local = Some(search.solver.local([best.root.u, best.root.v], work)?);
+        }
+        memory.last = best.surface;
+        memory.slots.get_mut(best.surface as usize).ok_or(Limit::Memory)?.keep(best, ray, stamp);
+    }
+    Ok(())
+}
+
+/// One ray.
+struct Search<'a, 's, 'm, P: Point> {
+    view: &'a View<'m, P>,
+    ray: &'a ViewRay<P::Scalar>,
+    nearby: InLine<'a, P::Scalar>,
+    solver: Solver<'a, 's, 'm, P>,
+}
+
+impl<P: Point> Search<'_, '_, '_, P> {
+    /// The point found from the predicted (u, v), verified or replaced by a closer one; whether so: if not,
+    /// the ray has to be searched in full.
+    fn resume(
+        &mut self,
+        start: [P::Scalar; 2],
+        best: &mut Option<Best<P::Scalar>>,
+        work: &mut Work,
+    ) -> Result<bool, Limit> {
+        let Search { view, ray, nearby, solver } = self;
+        let (planes, limits, surface) = (&ray.planes, solver.limits, solver.surface.number);
+        let Some((point, local)) = solver.follow(start, work)? else {
+            return Ok(false);
+        };
+        if planes.t_in_interval(point.depth).is_none() {
+            return Ok(false);
+        }
+        work.intersection_points += 1;
+        *best = Some(Best { root: point, surface, local: Some(local) });
+        let (mut owned, mut alone) = (false, true);
+        // The point may lie off by the tolerance, before the box that holds it.
+        let slack = limits.tolerance * P::Scalar::TWO;
+        nearby.visit(planes, point.depth + slack, limits, work, |number, patch, crossing, work| {
+            let farthest = best.map_or(point.depth, |best| best.root.depth);
+            if number == surface && patch.domain().holds(point.u, point.v) {
+                owned = true;
+                if met_at_most_once(patch, crossing, limits) {
+                    return Ok(farthest + slack);
+                }
+            } else if !reaches(crossing, &DepthRange { min: ray.range.min, max: farthest }) {
+                return Ok(farthest + slack);
+            }
+            alone = false;
+            solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
+            if let Some(root) = from_patch(solver, patch, crossing, First::Entrance, work)? {
+                Best::keep(best, Best { root, surface: number, local: None }, planes, work);
+            }
+            Ok(best.map_or(farthest, |best| best.root.depth) + slack)
+        })?;
+        if !owned && best.is_some_and(|best| best.surface == surface && best.root == point) {
+            return Ok(false);
+        }
+        if alone {
+            work.verified += 1;
+        } else {
+            work.decided_by_list += 1;
+        }
+        Ok(true)
+    }
+
+    /// The closest point by a search along the ray, front to back, that ends where nothing farther on can be closer.
+    fn in_full(&mut self, best: &mut Option<Best<P::Scalar>>, work: &mut Work) -> Result<(), Limit> {
+        let Search { view, ray, nearby, solver } = self;
+        let (planes, limits) = (&ray.planes, solver.limits);
+        work.full_searches += 1;
+        nearby.visit(planes, ray.range.max, limits, work, |number, patch, crossing, work| {
+            let range = DepthRange { min: ray.range.min, max: best.map_or(ray.range.max, |best| best.root.depth) };
+            if crossing.overlaps(&range) {
+                solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
+                if let Some(root) = from_patch(solver, patch, crossing, First::AsCritical, work)? {
+                    Best::keep(best, Best { root, surface: number, local: None }, planes, work);
+                }
+            }
+            Ok(best.map_or(ray.range.max, |best| best.root.depth))
+        })
+    }
+}

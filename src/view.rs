@@ -1,0 +1,376 @@
+//! A view: what all rays from one eye share, computed once.
+//!
+//! The scene is turned so that the camera looks along one axis: then all rays of the view are steepest along it, and two
+//! slopes are all that sets one apart from another. Of each surface and each patch it is known where in the image it can be
+//! seen, so that a scan line ([`crate::line`]) knows beforehand which of them a ray can meet: no tree and no grid is walked.
+//!
+//! Ours: the paper knows only that rays of a scan line are coherent.
+
+use crate::arena::{Arena, Need};
+use crate::frame::{Frame, NEAR};
+use crate::outline::Outline;
+use crate::patch::{Patch, Patches};
+use crate::planes::{DepthRange, Planes};
+use crate::point::Point;
+use crate::ray::{Interval, RayError};
+use crate::scalar::{Scalar, Vector3};
+use crate::scene::Scene;
+use crate::surface::Surface;
+
+/// A pinhole camera, in the caller's coordinates: the ray of the image's point (x, y) starts at the eye and has the direction
+/// `forward + x · right + y · up`. The four need not be of unit length nor at right angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera<S> {
+    /// Where all rays start.
+    pub eye: [S; 3],
+    /// The direction of the image's middle, (0, 0).
+    pub forward: [S; 3],
+    /// What one unit of x adds.
+    pub right: [S; 3],
+    /// What one unit of y adds.
+    pub up: [S; 3],
+}
+
+/// What is seen of a surface or a patch: a slot of lent memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Sight<S> {
+    /// Where in the image it can be seen.
+    pub(crate) outline: Outline<S>,
+    /// Its least depth.
+    pub(crate) near: S,
+}
+
+impl<S: Scalar> Sight<S> {
+    /// What a slot holds before it is filled.
+    pub const EMPTY: Self = Sight { outline: Outline::NOWHERE, near: S::ZERO };
+}
+
+/// Patches of one surface, one after another in memory, whose rows are kept together: the number of them. More make more
+/// patches be looked at per scan line in vain, fewer make more runs.
+pub const RUN: usize = 16;
+
+/// Lent memory for a view.
+#[derive(Debug)]
+pub struct ViewMemory<'m, P: Point> {
+    /// Control points of all surfaces, turned: as many as the scene has.
+    pub points: &'m mut [P],
+    /// One slot per surface.
+    pub surfaces: &'m mut [Sight<P::Scalar>],
+    /// The patches, turned: as many as there are, none for methods without patches.
+    pub patches: &'m mut [Patch<P::Scalar>],
+    /// One slot per patch.
+    pub sights: &'m mut [Sight<P::Scalar>],
+    /// The least and largest y of each run of [`RUN`] patches of a surface.
+    pub runs: &'m mut [[P::Scalar; 2]],
+    /// The first run of each surface, and at last their number: surfaces + 1 slots.
+    pub first_runs: &'m mut [u32],
+}
+
+/// Slots that a view needs, and what it was lent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ViewNeeds {
+    /// Of [`ViewMemory::points`].
+    pub points: Need,
+    /// Of [`ViewMemory::surfaces`].
+    pub surfaces: Need,
+    /// Of [`ViewMemory::patches`].
+    pub patches: Need,
+    /// Of [`ViewMemory::sights`].
+    pub sights: Need,
+    /// Of [`ViewMemory::runs`].
+    pub runs: Need,
+    /// Of [`ViewMemory::first_runs`].
+    pub first_runs: Need,
+}
+
+/// Why a view was not made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewError {
+    /// Lent memory is too small; all needs are listed. Lending nothing is how to ask.
+    Memory(ViewNeeds),
+    /// The ray of the image's middle cannot be traced in this scene.
+    Ray(RayError),
+    /// The camera's three vectors lie in a plane, or all but, so that an image has no extent.
+    Flat,
+    /// The eye is farther from the scene's origin than eight times its largest |coordinate|: near to parallel, its rays
+    /// would lose digits. They can be traced one by one.
+    Far,
+    /// More patches than 32 bits can count.
+    TooLarge,
+}
+
+impl core::fmt::Display for ViewError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            ViewError::Memory(needs) => write!(f, "lent memory is too small: {needs:?}"),
+            ViewError::Ray(error) => write!(f, "the ray of the middle: {error}"),
+            ViewError::Flat => f.write_str("the camera's vectors lie in a plane"),
+            ViewError::Far => f.write_str("the eye is farther away than eight times the scene's size"),
+            ViewError::TooLarge => f.write_str("more patches than 32 bits can count"),
+        }
+    }
+}
+
+impl core::error::Error for ViewError {}
+
+/// What a view holds beside its slots: plain numbers. "Turned" is: in the frame, with the third axis along `forward`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct ViewHeader<S> {
+    /// The turned eye.
+    eye: [S; 3],
+    /// The third turned coordinate at which depths of rays are 0: the middle of the scene.
+    middle: S,
+    /// The turned vectors forward, right and up.
+    directions: [[S; 3]; 3],
+    /// Units of the frame per caller's unit, and the inverse.
+    scale: S,
+    unscale: S,
+    /// See [`Frame::farthest`].
+    farthest: S,
+}
+
+/// A scene as seen from one eye: a view of lent memory.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'m, P: Point> {
+    header: ViewHeader<P::Scalar>,
+    scene: Scene<'m, P>,
+    patches: Patches<'m, P::Scalar>,
+    surfaces: &'m [Sight<P::Scalar>],
+    sights: &'m [Sight<P::Scalar>],
+    runs: &'m [[P::Scalar; 2]],
+    first_runs: &'m [u32],
+}
+
+type PatchesSeen<'m, S> = (u32, &'m [Sight<S>], &'m [[S; 2]]);
+
+/// A ray of a view.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewRay<S> {
+    /// Its x and y.
+    pub(crate) place: [S; 2],
+    pub(crate) planes: Planes<S>,
+    pub(crate) range: DepthRange<S>,
+    /// The distance from the eye to where depth is 0.
+    pub(crate) ahead: S,
+    /// How fast its slopes change with x.
+    pub(crate) turning: [S; 2],
+}
+
+impl<'m, P: Point> View<'m, P> {
+    /// Turns a scene, and for methods with patches these too, to a camera, into lent memory. Too little memory is an error that
+    /// lists all needs.
+    pub fn build(
+        scene: &Scene<'m, P>,
+        patches: Option<&Patches<'m, P::Scalar>>,
+        camera: &Camera<P::Scalar>,
+        memory: ViewMemory<'m, P>,
+    ) -> Result<Self, ViewError> {
+        let lens = Lens::of(scene.frame(), camera)?;
+        let (infinity, least) = (P::Scalar::INFINITY, P::Scalar::LEAST);
+        let along =
+            scene.nets().flat_map(|net| net.points().iter()).map(|point| point.turned(&lens.turn).position()[2]);
+        let [low, high] = along.fold([infinity, least], |[low, high], c| [low.lesser(c), high.greater(c)]);
+        let middle = if low <= high { (low + high) * P::Scalar::HALF } else { P::Scalar::ZERO };
+        let mut points = Arena::new(memory.points);
+        let mut surfaces = Arena::new(memory.surfaces);
+        for net in scene.nets() {
+            let mut sight = Sight { outline: Outline::NOWHERE, near: infinity };
+            for point in net.points() {
+                let turned = point.turned(&lens.turn);
+                points.push(turned);
+                let near = turned.position()[2] - middle - Frame::<P::Scalar>::padding();
+                sight.near = sight.near.lesser(near);
+                sight.outline = lens.grown(sight.outline, point.position());
+            }
+            surfaces.push(sight);
+        }
+        let mut turned = Arena::new(memory.patches);
+        let mut sights = Arena::new(memory.sights);
+        let mut runs = Arena::new(memory.runs);
+        let mut first_runs = Arena::new(memory.first_runs);
+        if let Some(patches) = patches {
+            for surface in 0..scene.len() {
+                first_runs.push(u32::try_from(runs.len()).map_err(|_| ViewError::TooLarge)?);
+                for run in patches.of_surface(surface).unwrap_or(&[]).chunks(RUN) {
+                    let mut rows = [infinity, least];
+                    for patch in run {
+                        let bounds = patch.bounds().turned(&lens.turn);
+                        let corners = patch.bounds().corners();
+                        let outline = corners.into_iter().fold(Outline::NOWHERE, |all, corner| lens.grown(all, corner));
+                        let [y0, y1] = outline.rows();
+                        rows = [rows[0].lesser(y0), rows[1].greater(y1)];
+                        turned.push(Patch { bounds, ..*patch });
+                        sights.push(Sight { outline, near: bounds.aabb().low[2] - middle });
+                    }
+                    runs.push(rows);
+                }
+            }
+            first_runs.push(u32::try_from(runs.len()).map_err(|_| ViewError::TooLarge)?);
+        }
+        let needs = ViewNeeds {
+            points: points.need(),
+            surfaces: surfaces.need(),
+            patches: turned.need(),
+            sights: sights.need(),
+            runs: runs.need(),
+            first_runs: first_runs.need(),
+        };
+        let all = [needs.points, needs.surfaces, needs.patches, needs.sights, needs.runs, needs.first_runs];
+        if !all.iter().all(Need::met) {
+            return Err(ViewError::Memory(needs));
+        }
+        Ok(View {
+            header: ViewHeader { middle, ..lens.header },
+            scene: scene.with_points(points.finish()),
+            patches: patches.map_or(Patches::new(&[], &[]), |patches| patches.with_patches(turned.finish())),
+            surfaces: surfaces.finish(),
+            sights: sights.finish(),
+            runs: runs.finish(),
+            first_runs: first_runs.finish(),
+        })
+    }
+
+    /// The patches, turned.
+    #[inline]
+    pub(crate) fn patches(&self) -> &'m [Patch<P::Scalar>] {
+        self.patches.all()
+    }
+
+    /// Whether it was made with patches.
+    pub(crate) fn has_patches(&self) -> bool {
+        !self.first_runs.is_empty()
+    }
+
+    /// What is seen of the surfaces.
+    pub(crate) fn surfaces(&self) -> &'m [Sight<P::Scalar>] {
+        self.surfaces
+    }
+
+    /// The number of a surface's first patch, what is seen of its patches, and the rows of its runs.
+    pub(crate) fn patches_of(&self, surface: usize) -> Option<PatchesSeen<'m, P::Scalar>> {
+        let (first, end) = self.patches.range(surface)?;
+        let (run, last) =
+            (*self.first_runs.get(surface)? as usize, *self.first_runs.get(surface.checked_add(1)?)? as usize);
+        Some((first as u32, self.sights.get(first..end)?, self.runs.get(run..last)?))
+    }
+
+    /// A surface by its number, turned.
+    #[inline]
+    pub(crate) fn surface(&self, number: usize) -> Option<Surface<'m, P>> {
+        self.scene.surface(number)
+    }
+
+    /// The ray of the image's point (x, y) in `interval`, as far as that lies ahead of the eye. Refuses NaN, and directions
+    /// more than 45° off `forward`, in either of the directions across it.
+    #[inline(always)]
+    pub fn ray(&self, [x, y]: [P::Scalar; 2], interval: &Interval<P::Scalar>) -> Result<ViewRay<P::Scalar>, RayError> {
+        let ViewHeader { eye, middle, directions: [forward, right, up], scale, unscale, farthest } = &self.header;
+        let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
+        let direction: [P::Scalar; 3] = core::array::from_fn(|k| forward[k] + x * right[k] + y * up[k]);
+        let speed = direction[2];
+        // See `Frame::ray`.
+        let held =
+            *farthest < P::Scalar::MAX * speed && *unscale * P::Scalar::EPSILON >= P::Scalar::MIN_POSITIVE * speed;
+        let inverse = one / speed;
+        let slopes = [direction[0] * inverse, direction[1] * inverse];
+        if !(held && slopes[0].abs() <= one && slopes[1].abs() <= one) {
+            return Err(RayError::OutOfView);
+        }
+        let ahead = *middle - eye[2];
+        let origin = [eye[0] + slopes[0] * ahead, eye[1] + slopes[1] * ahead, *middle];
+        let interval = Interval { min: interval.min.greater(zero), max: interval.max };
+        let range =
+            DepthRange { min: interval.min * speed * *scale - ahead, max: interval.max * speed * *scale - ahead };
+        let t_per_depth = *unscale * inverse;
+        let direction = [slopes[0], slopes[1], one];
+        let planes = Planes::turned(origin, direction, ahead * t_per_depth, t_per_depth, interval);
+        let turning = [0, 1].map(|k| (right[k] - slopes[k] * right[2]) * inverse);
+        Ok(ViewRay { place: [x, y], planes, range, ahead, turning })
+    }
+}
+
+/// How a camera turns the frame, and where in the image it sees points.
+struct Lens<S> {
+    header: ViewHeader<S>,
+    /// Unit vectors, at right angles: the rows of the turn.
+    turn: [[S; 3]; 3],
+    /// In the frame.
+    eye: [S; 3],
+    /// Of a point relative to the eye the products with these, divided by that with `along`, are its x and y.
+    across: [[S; 3]; 2],
+    along: [S; 3],
+    /// The larger length of `across`, and that of `along`.
+    lengths: [S; 2],
+}
+
+/// Below this share of their lengths' product, the volume of the camera's vectors is taken for 0: it would be known to a few
+/// digits only.
+const LEAST_VOLUME: u32 = 1 << 10;
+
+impl<S: Scalar> Lens<S> {
+    fn of(frame: &Frame<S>, camera: &Camera<S>) -> Result<Self, ViewError> {
+        let Camera { eye, forward, right, up } = *camera;
+        // The middle's ray stands for all others: theirs differ by a small factor.
+        frame.ray(eye, forward).map_err(ViewError::Ray)?;
+        for vector in [right, up] {
+            frame.ray(eye, vector).map_err(ViewError::Ray)?;
+        }
+        let eye = frame.from_caller(eye);
+        if !(S::Vec3::from_array(eye).largest() <= S::from_u32(NEAR)) {
+            return Err(ViewError::Far);
+        }
+        // By a common power of two, so that products neither overflow nor vanish.
+        let vectors = [forward, right, up].map(S::Vec3::from_array);
+        let largest = vectors[0].largest().greater(vectors[1].largest()).greater(vectors[2].largest());
+        let [f, r, u] = [forward, right, up]
+            .map(|vector| S::Vec3::from_array(vector.map(|c| c.times_power_of_two(-largest.binary_exponent()))));
+        let volume = f.dot(r.cross(u));
+        let size = f.length() * r.length() * u.length();
+        if !(volume.abs() > size * S::EPSILON * S::from_u32(LEAST_VOLUME)) {
+            return Err(ViewError::Flat);
+        }
+        let sign = if volume < S::ZERO { -S::ONE } else { S::ONE };
+        let (along, across) = (r.cross(u) * sign, [u.cross(f) * sign, f.cross(r) * sign]);
+        let third = f.unit();
+        let first = (r - third * third.dot(r)).unit();
+        let second = third.cross(first);
+        let turn = [first, second, third];
+        let turned = |vector: [S; 3]| turn.map(|row| row.dot(S::Vec3::from_array(vector)));
+        Ok(Lens {
+            header: ViewHeader {
+                eye: turned(eye),
+                middle: S::ZERO,
+                directions: [forward, right, up].map(turned),
+                scale: frame.scale(),
+                unscale: frame.unscale(),
+                farthest: frame.farthest(camera.eye),
+            },
+            turn: turn.map(Vector3::to_array),
+            eye,
+            across: across.map(Vector3::to_array),
+            along: along.to_array(),
+            lengths: [across[0].length().greater(across[1].length()), along.length()],
+        })
+    }
+
+    /// The outline grown to where a point of the frame is seen, and all points as near to it as boxes are padded.
+    fn grown(&self, outline: Outline<S>, point: [S; 3]) -> Outline<S> {
+        let from_eye = S::Vec3::from_array(core::array::from_fn(|k| point[k] - self.eye[k]));
+        let [across, along] = self.lengths;
+        // What the padding and the rounding of these sums may come to.
+        let off = Frame::<S>::padding() * (S::ONE + from_eye.length());
+        let depth = S::Vec3::from_array(self.along).dot(from_eye);
+        // Nor is a point beside the eye or behind it seen anywhere: but what reaches from before the eye to there may be seen
+        // out to the edge.
+        if !(depth > off * along * S::TWO) {
+            return Outline::EVERYWHERE;
+        }
+        let [x, y] = self.across.map(|row| S::Vec3::from_array(row).dot(from_eye) / depth);
+        let farther = x.abs().greater(y.abs());
+        outline.with([x, y], off * S::TWO * (across + farther * along) / depth)
+    }
+}
+
+#[cfg(test)]
+mod tests;
