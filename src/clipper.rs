@@ -258,6 +258,13 @@ fn contract<P: Point>(
             return Ok(Step::On);
         };
         let next = [u + du, v + dv];
+        let [slack_u, slack_v] = local.inverse_bounds(strays + limits.tolerance);
+        let near = [[next[0] - slack_u, next[0] + slack_u], [next[1] - slack_v, next[1] + slack_v]];
+        // A root is proved to lie there; and the step, shorter than all that the region allows for, leaves no more than the
+        // tolerance.
+        if region.encloses(near) && surface.strays([du, dv]) <= limits.tolerance {
+            return Ok(Step::Done(Some(Place { at: next, local })));
+        }
         if strays <= limits.tolerance {
             let (mut local, mut next, mut held) = (local, next, region.nearest(next));
             if !local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance) {
@@ -274,8 +281,6 @@ fn contract<P: Point>(
             let on_it = local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance);
             return Ok(Step::Done(on_it.then_some(Place { at: held, local })));
         }
-        let [slack_u, slack_v] = local.inverse_bounds(strays + limits.tolerance);
-        let near = [[next[0] - slack_u, next[0] + slack_u], [next[1] - slack_v, next[1] + slack_v]];
         match region.meet(near) {
             Some(smaller) => region = smaller,
             None => return Ok(Step::Done(None)),

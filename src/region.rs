@@ -74,6 +74,12 @@ impl<S: Scalar> Region<S> {
         Some(smaller)
     }
 
+    /// Whether it holds all of another rectangle.
+    #[inline(always)]
+    pub fn encloses(&self, sides: [[S; 2]; 2]) -> bool {
+        self.sides.iter().zip(sides).all(|(outer, inner)| outer[0] <= inner[0] && inner[1] <= outer[1])
+    }
+
     /// The smallest rectangle that holds it and another.
     #[inline(always)]
     pub fn joined(&self, other: &Self) -> Self {

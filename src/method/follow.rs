@@ -1,6 +1,7 @@
 //! Coherence memory that predicts: where on a surface the next ray of a scan line will meet it.
 //!
-//! Source: the two-step method of J. C. Adams and F. Bashforth (1883), for steps of uneven length.
+//! (u, v) along the line are extrapolated by the cubic through the last two rays' values and derivatives (Hermite), for steps
+//! of uneven length. The derivatives come from the last Newton steps, which computed all that they need.
 
 use crate::limits::Work;
 use crate::newton::{Local, Root};
@@ -15,10 +16,8 @@ use crate::view::ViewRay;
 pub struct Followed<S> {
     /// (u, v) of its point.
     at: [S; 2],
-    /// By how much they change per unit of x.
-    rate: [S; 2],
-    /// Half of what that changes by per unit of x.
-    bend: [S; 2],
+    /// By how much they change per unit of x, per its square and per its cube.
+    rates: [[S; 2]; 3],
     /// Where in the line the ray was.
     x: S,
     /// The scan line that it belongs to, plus one; 0 holds nothing. So nothing need be cleared between scan lines.
@@ -36,7 +35,7 @@ pub struct Following<'m, S> {
 
 impl<S: Scalar> Followed<S> {
     /// What a slot holds before it is filled.
-    pub const EMPTY: Self = Followed { at: [S::ZERO; 2], rate: [S::ZERO; 2], bend: [S::ZERO; 2], x: S::ZERO, stamp: 0 };
+    pub const EMPTY: Self = Followed { at: [S::ZERO; 2], rates: [[S::ZERO; 2]; 3], x: S::ZERO, stamp: 0 };
 
     /// Where the ray at `x` of scan line `stamp` is predicted to meet the surface; `None` without memory of that line.
     #[inline(always)]
@@ -45,24 +44,29 @@ impl<S: Scalar> Followed<S> {
             return None;
         }
         let step = x - self.x;
-        Some(core::array::from_fn(|k| self.at[k] + step * (self.rate[k] + step * self.bend[k])))
+        let [first, second, third] = &self.rates;
+        Some(core::array::from_fn(|k| self.at[k] + step * (first[k] + step * (second[k] + step * third[k]))))
     }
 
     /// Keeps what a ray found.
     #[inline(always)]
     pub(super) fn keep(&mut self, Best { root, local, .. }: &Best<S>, ray: &ViewRay<S>, stamp: u32) {
         let [x, _] = ray.place;
-        let rate = local.as_ref().and_then(|local| local.rate(root.depth + ray.ahead, ray.turning));
-        let step = x - self.x;
-        // Without an earlier rate in this line, or none that is known, nothing is said of how it changes.
-        let bend = match rate {
-            Some(rate) if self.stamp == stamp && self.rate != [S::ZERO; 2] && step != S::ZERO => {
-                let share = S::HALF / step;
-                core::array::from_fn(|k| (rate[k] - self.rate[k]) * share)
+        let at = [root.u, root.v];
+        let mut rates = [[S::ZERO; 2]; 3];
+        if let Some(rate) = local.as_ref().and_then(|local| local.rate(root.depth + ray.ahead, ray.turning)) {
+            rates[0] = rate;
+            let (step, old) = (x - self.x, self.rates[0]);
+            if self.stamp == stamp && old != [S::ZERO; 2] && step != S::ZERO {
+                let inverse = S::ONE / step;
+                for k in 0..2 {
+                    let mean = (at[k] - self.at[k]) * inverse;
+                    rates[1][k] = (old[k] + rate[k] + rate[k] - mean - mean - mean) * inverse;
+                    rates[2][k] = (old[k] + rate[k] - mean - mean) * (inverse * inverse);
+                }
             }
-            _ => [S::ZERO; 2],
-        };
-        *self = Followed { at: [root.u, root.v], rate: rate.unwrap_or([S::ZERO; 2]), bend, x, stamp };
+        }
+        *self = Followed { at, rates, x, stamp };
     }
 }
 
