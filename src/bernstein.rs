@@ -173,12 +173,30 @@ pub(crate) fn jet<S: Scalar, P: Copy, T: Linear<S>>(
 ) -> Result<Jet<T>, Full> {
     // These two shapes are nearly all that models hold; unrolled, they run about twice as fast as the loops.
     if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[P; 16]>::try_from(net)) {
-        return Ok(jet_unrolled::<S, P, T, 4, 4, 16>(net, &cubic(u), &cubic(v), part));
+        return Ok(jet_unrolled::<S, P, T, 4, 3, 16>(net, &quadratic(u), &quadratic(v), part));
     }
     if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&[P; 9]>::try_from(net)) {
-        return Ok(jet_unrolled::<S, P, T, 3, 3, 9>(net, &quadratic(u), &quadratic(v), part));
+        return Ok(jet_unrolled::<S, P, T, 3, 2, 9>(net, &linear(u), &linear(v), part));
     }
     jet_any_degree(degrees, net, [u, v], basis, part)
+}
+
+/// The value alone of what [`jet`] gives.
+#[inline(always)]
+pub(crate) fn value<S: Scalar, P: Copy, T: Linear<S>>(
+    degrees: Degrees,
+    net: &[P],
+    [u, v]: [S; 2],
+    basis: &mut BasisView<'_, S>,
+    part: impl Fn(P) -> T,
+) -> Result<T, Full> {
+    if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[P; 16]>::try_from(net)) {
+        return Ok(value_unrolled::<S, P, T, 4, 16>(net, &raised(&quadratic(u)), &raised(&quadratic(v)), part));
+    }
+    if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&[P; 9]>::try_from(net)) {
+        return Ok(value_unrolled::<S, P, T, 3, 9>(net, &raised(&linear(u)), &raised(&linear(v)), part));
+    }
+    Ok(jet_any_degree(degrees, net, [u, v], basis, part)?.point)
 }
 
 #[inline(never)]
@@ -261,48 +279,87 @@ const BINOMIALS: [[u16; MAX_DEGREE]; MAX_DEGREE - 1] = {
     rows
 };
 
-/// Values and derivatives of the cubic Bernstein polynomials.
+/// The Bernstein polynomials of degree 1, and 1 − t and t.
 #[inline(always)]
-fn cubic<S: Scalar>(t: S) -> [[S; 2]; 4] {
-    let three = S::from_u32(3);
-    let s = S::ONE - t;
-    let (ss, tt, st) = (s * s, t * t, s * t);
-    let (st3, ss3, tt3) = (three * st, three * ss, three * tt);
-    let st6 = st3 + st3;
-    [[ss * s, -ss3], [st3 * s, ss3 - st6], [st3 * t, st6 - tt3], [tt * t, tt3]]
+fn linear<S: Scalar>(t: S) -> ([S; 2], [S; 2]) {
+    let both = [S::ONE - t, t];
+    (both, both)
 }
 
-/// Values and derivatives of the quadratic Bernstein polynomials.
+/// The Bernstein polynomials of degree 2, and 1 − t and t.
 #[inline(always)]
-fn quadratic<S: Scalar>(t: S) -> [[S; 2]; 3] {
+fn quadratic<S: Scalar>(t: S) -> ([S; 3], [S; 2]) {
     let s = S::ONE - t;
-    let (s2, t2) = (s + s, t + t);
-    [[s * s, -s2], [s2 * t, s2 - t2], [t * t, t2]]
+    let st = s * t;
+    ([s * s, st + st, t * t], [s, t])
 }
 
-/// [`jet`] for an order known when compiling; `N` is `R · C`.
+/// The polynomial with these coefficients and its derivative over the degree, by way of the two polynomials of the degree
+/// below: the last level of de Casteljau's algorithm. `LESS` is one less than `ORDER`.
+///
+/// Half as many numbers to hold as with values and derivatives of all Bernstein polynomials, so that they stay in registers.
 #[inline(always)]
-fn jet_unrolled<S: Scalar, P: Copy, T: Linear<S>, const R: usize, const C: usize, const N: usize>(
+fn blend<S: Scalar, T: Linear<S>, const ORDER: usize, const LESS: usize>(
+    coefficients: [T; ORDER],
+    (below, [s, t]): &([S; LESS], [S; 2]),
+) -> [T; 2] {
+    const { assert!(LESS + 1 == ORDER && LESS > 0) }
+    let (mut first, mut second) = (coefficients[0] * below[0], coefficients[1] * below[0]);
+    for k in 1..LESS {
+        first = first + coefficients[k] * below[k];
+        second = second + coefficients[k + 1] * below[k];
+    }
+    [first * *s + second * *t, second - first]
+}
+
+/// The Bernstein polynomials of the degree above.
+#[inline(always)]
+fn raised<S: Scalar, const LESS: usize, const ORDER: usize>((below, [s, t]): &([S; LESS], [S; 2])) -> [S; ORDER] {
+    const { assert!(LESS + 1 == ORDER) }
+    let mut all = [S::ZERO; ORDER];
+    for k in 0..LESS {
+        all[k] = all[k] + below[k] * *s;
+        all[k + 1] = below[k] * *t;
+    }
+    all
+}
+
+/// [`value`] for an order known when compiling; `N` is `ORDER²`.
+#[inline(always)]
+fn value_unrolled<S: Scalar, P: Copy, T: Linear<S>, const ORDER: usize, const N: usize>(
     net: &[P; N],
-    bu: &[[S; 2]; R],
-    bv: &[[S; 2]; C],
+    u: &[S; ORDER],
+    v: &[S; ORDER],
+    part: impl Fn(P) -> T,
+) -> T {
+    const { assert!(ORDER * ORDER == N) }
+    let mut value = T::ZERO;
+    for i in 0..ORDER {
+        let mut row = part(net[i * ORDER]) * v[0];
+        for j in 1..ORDER {
+            row = row + part(net[i * ORDER + j]) * v[j];
+        }
+        value = if i == 0 { row * u[0] } else { value + row * u[i] };
+    }
+    value
+}
+
+/// [`jet`] for an order known when compiling; `N` is `ORDER²`.
+#[inline(always)]
+fn jet_unrolled<S: Scalar, P: Copy, T: Linear<S>, const ORDER: usize, const LESS: usize, const N: usize>(
+    net: &[P; N],
+    u: &([S; LESS], [S; 2]),
+    v: &([S; LESS], [S; 2]),
     part: impl Fn(P) -> T,
 ) -> Jet<T> {
-    const { assert!(R * C == N && R > 0 && C > 0) }
-    let mut jet = Jet { point: T::ZERO, du: T::ZERO, dv: T::ZERO };
-    for i in 0..R {
-        let first = part(net[i * C]);
-        let (mut point, mut dv) = (first * bv[0][0], first * bv[0][1]);
-        for j in 1..C {
-            let p = part(net[i * C + j]);
-            point = point + p * bv[j][0];
-            dv = dv + p * bv[j][1];
-        }
-        jet.point = jet.point + point * bu[i][0];
-        jet.du = jet.du + point * bu[i][1];
-        jet.dv = jet.dv + dv * bu[i][0];
+    const { assert!(ORDER * ORDER == N) }
+    let (mut points, mut slopes) = ([T::ZERO; ORDER], [T::ZERO; ORDER]);
+    for i in 0..ORDER {
+        [points[i], slopes[i]] = blend::<S, T, ORDER, LESS>(core::array::from_fn(|j| part(net[i * ORDER + j])), v);
     }
-    jet
+    let ([point, du], [dv, _]) = (blend::<S, T, ORDER, LESS>(points, u), blend::<S, T, ORDER, LESS>(slopes, u));
+    let degree = S::from_u32(LESS as u32);
+    Jet { point, du: du * degree, dv: dv * degree }
 }
 
 #[cfg(test)]

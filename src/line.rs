@@ -17,7 +17,7 @@ use crate::ray::Hit;
 use crate::scalar::Scalar;
 use crate::surface::Surface;
 use crate::sweep::Along;
-use crate::view::{RUN, Sight, View, ViewRay};
+use crate::view::{Facing, RUN, Sight, View, ViewRay};
 
 /// Where in a scan line a surface or a patch can be seen: a slot of lent memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -281,9 +281,14 @@ impl<'m, S: Scalar> Line<'m, S> {
         ) -> Result<Option<Root<S>>, Limit>,
     ) -> Result<Option<Hit<S>>, GaveUp<S>> {
         *work = Work::default();
+        let nearby = match self.nearby(view.patches(), ray, limits, work) {
+            Ok(Some(nearby)) => nearby,
+            Ok(None) => return Ok(None),
+            Err(limit) => return Err(GaveUp { limit, best: None }),
+        };
+        let Facing { planes, range, .. } = &view.facing(ray);
         let mut best: Option<(Root<S>, u32)> = None;
-        let ended = self.surfaces(view.patches(), ray, limits, work, |number, near, in_line, work| {
-            let ViewRay { planes, range, .. } = ray;
+        let ended = nearby.surfaces(limits, work, |number, near, in_line, work| {
             let farthest = best.map_or(range.max, |(root, _)| root.depth);
             if !(near <= farthest) {
                 return Ok(());
@@ -291,7 +296,7 @@ impl<'m, S: Scalar> Line<'m, S> {
             spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
             let surface = view.surface(number as usize).ok_or(Limit::Slot)?;
             let within = DepthRange { min: range.min, max: farthest };
-            if let Some(root) = search(&surface, planes, within, &in_line, work)? {
+            if let Some(root) = search(&surface, planes, within, in_line, work)? {
                 // As in `Scene::closest`.
                 let closer = |(old, other): (Root<S>, u32)| {
                     root.depth < old.depth || (root.depth == old.depth && number < other)
@@ -302,14 +307,14 @@ impl<'m, S: Scalar> Line<'m, S> {
             }
             Ok(())
         });
-        let best = best.map(|(root, surface)| root.hit(surface, ray.planes.t(root.depth)));
+        let best = best.map(|(root, surface)| root.hit(surface, planes.t(root.depth)));
         match ended {
             Ok(()) => Ok(best),
             Err(limit) => Err(GaveUp { limit, best }),
         }
     }
 
-    /// The spans that may hold a ray.
+    /// The spans that may hold a ray; `None` if none does.
     #[inline(always)]
     pub(crate) fn nearby<'l>(
         &'l mut self,
@@ -317,61 +322,63 @@ impl<'m, S: Scalar> Line<'m, S> {
         ray: &ViewRay<S>,
         limits: &Limits<S>,
         work: &mut Work,
-    ) -> Result<InLine<'l, S>, Limit> {
+    ) -> Result<Option<InLine<'l, S>>, Limit> {
         self.go_to(ray, limits, work)?;
-        Ok(InLine {
-            spans: self.spans,
-            of_surface: self.active.get(..self.count).unwrap_or(&[]),
-            x: ray.place[0],
-            patches,
-        })
-    }
-
-    /// Each surface of which a span holds the ray, with the least depth of those spans.
-    #[inline(always)]
-    fn surfaces(
-        &mut self,
-        patches: &[Patch<S>],
-        ray: &ViewRay<S>,
-        limits: &Limits<S>,
-        work: &mut Work,
-        mut visit: impl FnMut(u32, S, InLine<'_, S>, &mut Work) -> Result<(), Limit>,
-    ) -> Result<(), Limit> {
-        self.go_to(ray, limits, work)?;
-        let x = ray.place[0];
-        let mut rest = self.active.get(..self.count).unwrap_or(&[]);
-        // Ends: each turn takes at least one span away.
-        while let Some((&first, after)) = rest.split_first() {
-            spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
-            let span = self.span(first)?;
-            if !span.holds(x) {
-                rest = after;
-                continue;
-            }
-            let same =
-                after.iter().take_while(|&&k| self.spans.get(k as usize).is_some_and(|k| k.surface == span.surface));
-            let count = 1 + same.count();
-            let Some((of_surface, others)) = rest.split_at_checked(count) else {
-                break;
-            };
-            visit(span.surface, span.near, InLine { spans: self.spans, of_surface, x, patches }, work)?;
-            rest = others;
-        }
-        Ok(())
+        let mut nearby =
+            InLine { spans: self.spans, list: self.active.get(..self.count).unwrap_or(&[]), x: ray.place[0], patches };
+        nearby.skip();
+        Ok(if nearby.list.is_empty() { None } else { Some(nearby) })
     }
 }
 
-/// The spans of one surface around a ray.
+/// The spans around a ray, of one surface or of all, and others that end in the same bucket.
 #[derive(Clone, Copy, Debug)]
 pub struct InLine<'l, S> {
     spans: &'l [Span<S>],
-    of_surface: &'l [u32],
+    list: &'l [u32],
     x: S,
     /// The patches of the view.
     patches: &'l [Patch<S>],
 }
 
-impl<S: Scalar> InLine<'_, S> {
+impl<'l, S: Scalar> InLine<'l, S> {
+    /// Skips the first ones that do not hold the ray.
+    #[inline(always)]
+    fn skip(&mut self) {
+        // Ends with the list.
+        while let Some((&first, after)) = self.list.split_first() {
+            if self.spans.get(first as usize).is_none_or(|span| span.holds(self.x)) {
+                break;
+            }
+            self.list = after;
+        }
+    }
+
+    /// Each surface of which a span holds the ray, with the least depth of those spans, if the list is ordered by surfaces.
+    #[inline(always)]
+    fn surfaces(
+        mut self,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(u32, S, &Self, &mut Work) -> Result<(), Limit>,
+    ) -> Result<(), Limit> {
+        // Ends: each turn takes at least one span away.
+        while let Some((&first, after)) = self.list.split_first() {
+            spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
+            let span = self.spans.get(first as usize).ok_or(Limit::Slot)?;
+            let same =
+                |&&other: &&u32| self.spans.get(other as usize).is_some_and(|other| other.surface == span.surface);
+            let count = 1 + after.iter().take_while(same).count();
+            let Some((of_surface, others)) = self.list.split_at_checked(count) else {
+                break;
+            };
+            visit(span.surface, span.near, &InLine { list: of_surface, ..self }, work)?;
+            self.list = others;
+            self.skip();
+        }
+        Ok(())
+    }
+
     /// Calls `visit` with each patch whose parallelepiped the ray meets, and its surface's number: in the order of the list, up to
     /// the depth that `visit` returned last.
     #[inline(always)]
@@ -383,7 +390,7 @@ impl<S: Scalar> InLine<'_, S> {
         work: &mut Work,
         mut visit: impl FnMut(u32, &Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
     ) -> Result<(), Limit> {
-        for &number in self.of_surface {
+        for &number in self.list {
             spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
             let span = self.spans.get(number as usize).ok_or(Limit::Slot)?;
             if !span.holds(self.x) {
@@ -404,15 +411,14 @@ impl<S: Scalar> InLine<'_, S> {
     /// Whether the list holds a span of the surface around the ray.
     #[inline(always)]
     pub(crate) fn holds_surface(&self, surface: u32) -> bool {
-        let spans = self.of_surface.iter().filter_map(|&number| self.spans.get(number as usize));
+        let spans = self.list.iter().filter_map(|&number| self.spans.get(number as usize));
         spans.into_iter().any(|span| span.surface == surface && span.holds(self.x))
     }
 
-    /// The surface of the first span around the ray.
+    /// The surface of the first span.
     #[inline(always)]
     pub(crate) fn first_surface(&self) -> Option<u32> {
-        let spans = self.of_surface.iter().filter_map(|&number| self.spans.get(number as usize));
-        spans.into_iter().find(|span| span.holds(self.x)).map(|span| span.surface)
+        Some(self.spans.get(*self.list.first()? as usize)?.surface)
     }
 }
 

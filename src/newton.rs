@@ -54,7 +54,7 @@ pub(crate) struct Local<S> {
 
 impl<S: Scalar> Local<S> {
     /// Of a projected net, at (u, v).
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn at<F: Flat<Scalar = S>>(
         at: [S; 2],
         degrees: Degrees,

@@ -183,15 +183,11 @@ impl<S: Scalar> Planes<S> {
         at: [S; 2],
         basis: &mut BasisView<'_, S>,
     ) -> Result<S, Full> {
-        let [steep, ..] = self.axes;
-        let along = |p: P| steep.of(&p.weighted_position());
-        let place = if P::RATIONAL {
-            let Tuple([place, weight]) = net.jet_of(at, basis, |p| Tuple([along(p), p.weight()]))?.point;
-            place / weight
-        } else {
-            let Tuple([place]) = net.jet_of(at, basis, |p| Tuple([along(p)]))?.point;
-            place
-        };
+        let place = match self.axes[0] {
+            Axis::X => place_on::<P, 0>(net, at, basis),
+            Axis::Y => place_on::<P, 1>(net, at, basis),
+            Axis::Z => place_on::<P, 2>(net, at, basis),
+        }?;
         Ok((place - self.ordered[0]) * self.forward)
     }
 
@@ -237,6 +233,23 @@ impl<S: Scalar> Planes<S> {
     }
 }
 
+/// The coordinate along an axis of the point at (u, v) of a net.
+#[inline(never)]
+fn place_on<P: Point, const AXIS: usize>(
+    net: &Net<'_, P>,
+    at: [P::Scalar; 2],
+    basis: &mut BasisView<'_, P::Scalar>,
+) -> Result<P::Scalar, Full> {
+    let along = |p: P| p.weighted_position()[AXIS];
+    if P::RATIONAL {
+        let Tuple([place, weight]) = net.value_of(at, basis, |p| Tuple([along(p), p.weight()]))?;
+        Ok(place / weight)
+    } else {
+        let Tuple([place]) = net.value_of(at, basis, |p| Tuple([along(p)]))?;
+        Ok(place)
+    }
+}
+
 /// The net of a surface projected on a ray's planes, into the front of `out`, which grows to hold it: what Newton's method
 /// and Bézier clipping solve on.
 #[inline]
@@ -250,11 +263,28 @@ pub fn project_net<'o, P: Point>(
         out.resize(points.len(), P::Flat::ZERO).map_err(|_| Full)?;
     }
     let out = out.get_mut(..points.len()).ok_or(Full)?;
-    for (slot, &point) in out.iter_mut().zip(points) {
-        let Projected { f, g, .. } = planes.weighted(point);
-        *slot = P::Flat::new(f, g, point.weight());
+    // The axes' order is settled outside of the loop.
+    match planes.axes[0] {
+        Axis::X => project_along::<P, 0>(points, planes, out),
+        Axis::Y => project_along::<P, 1>(points, planes, out),
+        Axis::Z => project_along::<P, 2>(points, planes, out),
     }
     Ok(out)
+}
+
+#[inline(never)]
+fn project_along<P: Point, const AXIS: usize>(points: &[P], planes: &Planes<P::Scalar>, out: &mut [P::Flat]) {
+    let ([o, o1, o2], [slope1, slope2]) = (planes.ordered, planes.slopes);
+    for (slot, &point) in out.iter_mut().zip(points) {
+        let (p, w) = (point.weighted_position(), point.weight());
+        let [along, first, second] = [p[AXIS], p[(AXIS + 1) % 3], p[(AXIS + 2) % 3]];
+        let [along, first, second] = if P::RATIONAL {
+            [along - o * w, first - o1 * w, second - o2 * w]
+        } else {
+            [along - o, first - o1, second - o2]
+        };
+        *slot = P::Flat::new(first - slope1 * along, second - slope2 * along, w);
+    }
 }
 
 #[cfg(test)]

@@ -121,15 +121,15 @@ impl<'m, P: Point> Net<'m, P> {
         bernstein::jet(self.degrees(), self.points, [u, v], basis, |p| p)
     }
 
-    /// Value and first derivatives at (u, v) of what `part` takes from each control point.
+    /// Value at (u, v) of what `part` takes from each control point.
     #[inline(always)]
-    pub(crate) fn jet_of<T: Linear<P::Scalar>>(
+    pub(crate) fn value_of<T: Linear<P::Scalar>>(
         &self,
         at: [P::Scalar; 2],
         basis: &mut BasisView<'_, P::Scalar>,
         part: impl Fn(P) -> T,
-    ) -> Result<Jet<T>, Full> {
-        bernstein::jet(self.degrees(), self.points, at, basis, part)
+    ) -> Result<T, Full> {
+        bernstein::value(self.degrees(), self.points, at, basis, part)
     }
 
     /// The position at (u, v), weight divided out.
@@ -139,7 +139,7 @@ impl<'m, P: Point> Net<'m, P> {
         v: P::Scalar,
         basis: &mut BasisView<'_, P::Scalar>,
     ) -> Result<[P::Scalar; 3], Full> {
-        Ok(self.jet(u, v, basis)?.point.position())
+        Ok(self.value_of([u, v], basis, |p| p)?.position())
     }
 
     /// The unit normal at (u, v), along ∂S/∂u × ∂S/∂v; zero where the surface has none.

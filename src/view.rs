@@ -144,11 +144,20 @@ pub struct View<'m, P: Point> {
 
 type PatchesSeen<'m, S> = (u32, &'m [Sight<S>], &'m [[S; 2]]);
 
-/// A ray of a view.
-#[derive(Clone, Copy, Debug)]
+/// A ray of a view. Made by [`View::ray`], so that it is valid.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRay<S> {
     /// Its x and y.
     pub(crate) place: [S; 2],
+    /// Turned.
+    direction: [S; 3],
+    interval: Interval<S>,
+}
+
+/// A ray of a view, with all that searching takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Facing<S> {
+    pub(crate) x: S,
     pub(crate) planes: Planes<S>,
     pub(crate) range: DepthRange<S>,
     /// The distance from the eye to where depth is 0.
@@ -265,28 +274,38 @@ impl<'m, P: Point> View<'m, P> {
     /// more than 45° off `forward`, in either of the directions across it.
     #[inline(always)]
     pub fn ray(&self, [x, y]: [P::Scalar; 2], interval: &Interval<P::Scalar>) -> Result<ViewRay<P::Scalar>, RayError> {
-        let ViewHeader { eye, middle, directions: [forward, right, up], scale, unscale, farthest } = &self.header;
-        let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
+        let ViewHeader { directions: [forward, right, up], unscale, farthest, .. } = &self.header;
         let direction: [P::Scalar; 3] = core::array::from_fn(|k| forward[k] + x * right[k] + y * up[k]);
-        let speed = direction[2];
-        // See `Frame::ray`.
-        let held =
-            *farthest < P::Scalar::MAX * speed && *unscale * P::Scalar::EPSILON >= P::Scalar::MIN_POSITIVE * speed;
-        let inverse = one / speed;
-        let slopes = [direction[0] * inverse, direction[1] * inverse];
-        if !(held && slopes[0].abs() <= one && slopes[1].abs() <= one) {
+        let [across, upward, speed] = direction;
+        if !(across.abs() <= speed && upward.abs() <= speed) {
             return Err(RayError::OutOfView);
         }
+        // See `Frame::ray`.
+        let small = *unscale * P::Scalar::EPSILON;
+        if !(*farthest < P::Scalar::MAX * speed && small >= P::Scalar::MIN_POSITIVE * speed) {
+            return Err(RayError::Unrepresentable);
+        }
+        Ok(ViewRay { place: [x, y], direction, interval: *interval })
+    }
+
+    /// The ray with all that searching takes: most rays that meet nothing are done with before.
+    #[inline(always)]
+    pub(crate) fn facing(&self, ray: &ViewRay<P::Scalar>) -> Facing<P::Scalar> {
+        let ViewHeader { eye, middle, directions: [_, right, _], scale, unscale, .. } = &self.header;
+        let ViewRay { place: [x, _], direction: [across, upward, speed], interval } = *ray;
+        let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
+        let inverse = one / speed;
+        let slopes = [across * inverse, upward * inverse];
         let ahead = *middle - eye[2];
         let origin = [eye[0] + slopes[0] * ahead, eye[1] + slopes[1] * ahead, *middle];
         let interval = Interval { min: interval.min.greater(zero), max: interval.max };
-        let range =
-            DepthRange { min: interval.min * speed * *scale - ahead, max: interval.max * speed * *scale - ahead };
+        let depth = |t: P::Scalar| t * speed * *scale - ahead;
+        let range = DepthRange { min: depth(interval.min), max: depth(interval.max) };
         let t_per_depth = *unscale * inverse;
         let direction = [slopes[0], slopes[1], one];
         let planes = Planes::turned(origin, direction, ahead * t_per_depth, t_per_depth, interval);
         let turning = [0, 1].map(|k| (right[k] - slopes[k] * right[2]) * inverse);
-        Ok(ViewRay { place: [x, y], planes, range, ahead, turning })
+        Facing { x, planes, range, ahead, turning }
     }
 }
 

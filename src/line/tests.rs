@@ -112,10 +112,12 @@ const WHOLE: [f64; 2] = [-1.0, 1.0];
 fn met(view: &View<'_, Plain<f64>>, line: &mut Line<'_, f64>, place: [f64; 2]) -> Vec<usize> {
     let (limits, mut work) = (Limits::default(), Work::default());
     let ray = view.ray(place, &Interval::ahead()).unwrap();
-    let nearby = line.nearby(view.patches(), &ray, &limits, &mut work).unwrap();
-    let mut met = Vec::new();
+    let Some(nearby) = line.nearby(view.patches(), &ray, &limits, &mut work).unwrap() else {
+        return Vec::new();
+    };
+    let (mut met, facing) = (Vec::new(), view.facing(&ray));
     nearby
-        .visit(&ray.planes, ray.range.max, &limits, &mut work, |_, patch, _, _| {
+        .visit(&facing.planes, facing.range.max, &limits, &mut work, |_, patch, _, _| {
             met.push(view.patches().iter().position(|other| core::ptr::eq(other, patch)).unwrap());
             Ok(f64::INFINITY)
         })
@@ -125,7 +127,7 @@ fn met(view: &View<'_, Plain<f64>>, line: &mut Line<'_, f64>, place: [f64; 2]) -
 
 /// Of all patches those whose boxes the ray meets, anywhere before the eye.
 fn met_by_force(view: &View<'_, Plain<f64>>, place: [f64; 2]) -> Vec<usize> {
-    let ray = view.ray(place, &Interval::ahead()).unwrap();
+    let ray = view.facing(&view.ray(place, &Interval::ahead()).unwrap());
     let meets = |(_, patch): &(usize, &Patch<f64>)| {
         let crossing = patch.bounds().crossing(&ray.planes);
         crossing.is_some_and(|crossing| crossing.pierces().is_none_or(|ends| ends[1].depth >= ray.range.min))

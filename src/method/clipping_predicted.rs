@@ -26,7 +26,7 @@ use crate::region::Region;
 use crate::scalar::Scalar;
 use crate::surface::Surface;
 use crate::verify::{met_at_most_once, reaches};
-use crate::view::{View, ViewRay};
+use crate::view::{Facing, View, ViewRay};
 
 /// Half the width of the window around the predicted (u, v). Wider finds more roots that were predicted badly; narrower is
 /// proved more often to hold one root at most.
@@ -48,9 +48,16 @@ pub fn closest_in_view<P: Point>(
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     *work = Work::default();
-    let stamp = scan_line.wrapping_add(1);
+    let last = core::mem::replace(&mut memory.last, u32::MAX);
+    let nearby = match line.nearby(view.patches(), ray, limits, work) {
+        Ok(Some(nearby)) => nearby,
+        Ok(None) => return Ok(None),
+        Err(limit) => return Err(GaveUp { limit, best: None }),
+    };
+    let ray = &view.facing(ray);
     let mut best = None;
-    let ended = closest_so_far(view, line, memory, stamp, ray, limits, room, &mut best, work);
+    let ended =
+        closest_so_far(view, nearby, memory, last, scan_line.wrapping_add(1), ray, limits, room, &mut best, work);
     let best = best.map(|Best { root, surface, .. }| root.hit(surface, ray.planes.t(root.depth)));
     match ended {
         Ok(()) => Ok(best),
@@ -61,21 +68,17 @@ pub fn closest_in_view<P: Point>(
 #[inline(always)]
 fn closest_so_far<P: Point>(
     view: &View<'_, P>,
-    line: &mut Line<'_, P::Scalar>,
+    nearby: InLine<'_, P::Scalar>,
     memory: &mut Following<'_, P::Scalar>,
+    last: u32,
     stamp: u32,
-    ray: &ViewRay<P::Scalar>,
+    ray: &Facing<P::Scalar>,
     limits: &Limits<P::Scalar>,
     room: &mut ClipRoom<'_, P>,
     best: &mut Option<Best<P::Scalar>>,
     work: &mut Work,
 ) -> Result<(), Limit> {
-    let x = ray.place[0];
-    let last = core::mem::replace(&mut memory.last, u32::MAX);
-    let nearby = line.nearby(view.patches(), ray, limits, work)?;
-    if nearby.first_surface().is_none() {
-        return Ok(());
-    }
+    let x = ray.x;
     let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(x, stamp));
     let mut search = Search { view, ray, limits, nearby, room, projected: None };
     let mut resumed = false;
@@ -97,7 +100,7 @@ fn closest_so_far<P: Point>(
 /// One ray.
 struct Search<'a, 's, 'm, P: Point> {
     view: &'a View<'m, P>,
-    ray: &'a ViewRay<P::Scalar>,
+    ray: &'a Facing<P::Scalar>,
     limits: &'a Limits<P::Scalar>,
     nearby: InLine<'a, P::Scalar>,
     room: &'a mut ClipRoom<'s, P>,

@@ -7,7 +7,7 @@ use crate::limits::Work;
 use crate::newton::{Local, Root};
 use crate::planes::Planes;
 use crate::scalar::Scalar;
-use crate::view::ViewRay;
+use crate::view::Facing;
 
 /// What the previous ray of a scan line left on one surface: a slot of memory that the caller lends, one per surface and
 /// thread.
@@ -50,8 +50,8 @@ impl<S: Scalar> Followed<S> {
 
     /// Keeps what a ray found.
     #[inline(always)]
-    pub(super) fn keep(&mut self, Best { root, local, .. }: &Best<S>, ray: &ViewRay<S>, stamp: u32) {
-        let [x, _] = ray.place;
+    pub(super) fn keep(&mut self, Best { root, local, .. }: &Best<S>, ray: &Facing<S>, stamp: u32) {
+        let x = ray.x;
         let at = [root.u, root.v];
         let mut rates = [[S::ZERO; 2]; 3];
         if let Some(rate) = local.as_ref().and_then(|local| local.rate(root.depth + ray.ahead, ray.turning)) {

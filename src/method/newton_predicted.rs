@@ -20,7 +20,7 @@ use crate::point::Point;
 use crate::ray::Hit;
 use crate::scalar::Scalar;
 use crate::verify::{met_at_most_once, reaches};
-use crate::view::{View, ViewRay};
+use crate::view::{Facing, View, ViewRay};
 
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
@@ -38,9 +38,16 @@ pub fn closest_in_view<P: Point>(
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     *work = Work::default();
-    let stamp = scan_line.wrapping_add(1);
+    let last = core::mem::replace(&mut memory.last, u32::MAX);
+    let nearby = match line.nearby(view.patches(), ray, limits, work) {
+        Ok(Some(nearby)) => nearby,
+        Ok(None) => return Ok(None),
+        Err(limit) => return Err(GaveUp { limit, best: None }),
+    };
+    let ray = &view.facing(ray);
     let mut best = None;
-    let ended = closest_so_far(view, line, memory, stamp, ray, limits, scratch, &mut best, work);
+    let ended =
+        closest_so_far(view, nearby, memory, last, scan_line.wrapping_add(1), ray, limits, scratch, &mut best, work);
     let best = best.map(|Best { root, surface, .. }| root.hit(surface, ray.planes.t(root.depth)));
     match ended {
         Ok(()) => Ok(best),
@@ -51,24 +58,21 @@ pub fn closest_in_view<P: Point>(
 #[inline(always)]
 fn closest_so_far<P: Point>(
     view: &View<'_, P>,
-    line: &mut Line<'_, P::Scalar>,
+    nearby: InLine<'_, P::Scalar>,
     memory: &mut Following<'_, P::Scalar>,
+    last: u32,
     stamp: u32,
-    ray: &ViewRay<P::Scalar>,
+    ray: &Facing<P::Scalar>,
     limits: &Limits<P::Scalar>,
     scratch: &mut ScratchView<'_, P>,
     best: &mut Option<Best<P::Scalar>>,
     work: &mut Work,
 ) -> Result<(), Limit> {
-    let (planes, x) = (&ray.planes, ray.place[0]);
-    let last = core::mem::replace(&mut memory.last, u32::MAX);
-    let nearby = line.nearby(view.patches(), ray, limits, work)?;
-    let Some(first) = nearby.first_surface() else {
-        return Ok(());
-    };
+    let (planes, x) = (&ray.planes, ray.x);
     let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(x, stamp));
     let start = start.filter(|_| nearby.holds_surface(last));
-    let surface = view.surface(if start.is_some() { last } else { first } as usize).ok_or(Limit::Slot)?;
+    let first = if start.is_some() { last } else { nearby.first_surface().ok_or(Limit::Slot)? };
+    let surface = view.surface(first as usize).ok_or(Limit::Slot)?;
     let solver = Solver::new(&surface, planes, limits, scratch.flat, &mut scratch.basis);
     let mut search = Search { view, ray, nearby, solver };
     let mut resumed = false;
@@ -95,7 +99,7 @@ fn closest_so_far<P: Point>(
 /// One ray.
 struct Search<'a, 's, 'm, P: Point> {
     view: &'a View<'m, P>,
-    ray: &'a ViewRay<P::Scalar>,
+    ray: &'a Facing<P::Scalar>,
     nearby: InLine<'a, P::Scalar>,
     solver: Solver<'a, 's, 'm, P>,
 }

@@ -60,12 +60,13 @@ fn found_and_expected<S: Scalar>(scale: f64, place: [f64; 2]) -> Option<([f64; 3
         let (camera, mut room) = (camera::<S>(scale), Room::new());
         let view = View::build(scene, None, &camera, room.lend()).unwrap();
         let ray = view.ray(place.map(S::from_f64), &Interval::ahead()).unwrap();
+        let facing = view.facing(&ray);
         let (limits, mut scratch) = (Limits::default(), Scratch::<Plain<S>, 2, 4>::new());
         let mut scratch = scratch.view();
         let surface = view.surface(0).unwrap();
-        let mut solver = Solver::new(&surface, &ray.planes, &limits, scratch.flat, &mut scratch.basis);
+        let mut solver = Solver::new(&surface, &facing.planes, &limits, scratch.flat, &mut scratch.basis);
         let root = solver.solve([S::HALF; 2], &mut Work::default()).unwrap()?;
-        let (t, [x, y]) = (ray.planes.t(root.depth).to_f64(), place);
+        let (t, [x, y]) = (facing.planes.t(root.depth).to_f64(), place);
         let along = |k: usize| {
             let [e, f, r, u] = [camera.eye, camera.forward, camera.right, camera.up].map(|v| v[k].to_f64());
             (e + t * (f + x * r + y * u)) / scale
