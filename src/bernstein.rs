@@ -318,7 +318,7 @@ fn raised<S: Scalar, const LESS: usize, const ORDER: usize>((below, [s, t]): &([
     const { assert!(LESS + 1 == ORDER) }
     let mut all = [S::ZERO; ORDER];
     for k in 0..LESS {
-        all[k] = all[k] + below[k] * *s;
+        all[k] += below[k] * *s;
         all[k + 1] = below[k] * *t;
     }
     all
