@@ -51,6 +51,17 @@ impl Domain {
         })
     }
 
+    /// `[u0, u1]` and `[v0, v1]`, exact; for inner loops.
+    #[inline(always)]
+    pub(crate) fn sides<S: Scalar>(self) -> [[S; 2]; 2] {
+        [self.u, self.v & !ROUGH].map(|index| {
+            let width = width::<S>(index);
+            // Index i of 2^level, held as 2^level + i.
+            let first = S::from_u32(u32::from(index)) * width - S::ONE;
+            [first, first + width]
+        })
+    }
+
     /// Whether it holds (u, v); exactly one domain of a subdivision does, for any (u, v) in [0, 1]².
     #[inline]
     pub fn holds<S: Scalar>(self, u: S, v: S) -> bool {

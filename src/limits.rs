@@ -108,6 +108,22 @@ pub struct Extent {
 }
 
 impl<S: Scalar> Limits<S> {
+    /// The same budgets for a call that goes on counting where `work` stands.
+    #[inline(always)]
+    pub(crate) fn beyond(&self, work: &Work) -> Self {
+        Limits {
+            surfaces: self.surfaces.saturating_add(work.surfaces_tested),
+            nodes: self.nodes.saturating_add(work.nodes_visited),
+            patches: self.patches.saturating_add(work.patches_tested),
+            voxels: self.voxels.saturating_add(work.voxels_visited),
+            spans: self.spans.saturating_add(work.spans_visited),
+            newton_steps: self.newton_steps.saturating_add(work.newton_steps),
+            clip_steps: self.clip_steps.saturating_add(work.clip_steps),
+            bisections: self.bisections.saturating_add(work.bisections),
+            ..*self
+        }
+    }
+
     /// The most work one call can do under these limits, whatever the ray, in a scene of this extent.
     pub fn worst_case(&self, extent: &Extent) -> Work {
         let walks = extent.walks.max(1);

@@ -194,19 +194,19 @@ impl<'m, S: Scalar> Line<'m, S> {
 
     /// Brings the list to a ray's place in the line.
     #[inline(always)]
-    fn go_to(&mut self, ray: &ViewRay<S>, limits: &Limits<S>, work: &mut Work) -> Result<(), Limit> {
+    fn go_to(&mut self, ray: &ViewRay<S>, most: u32, work: &mut Work) -> Result<(), Limit> {
         let Window { x: [left, right], y: [low, high] } = self.window;
         let [x, y] = ray.place;
         if !(left <= x && x <= right && low <= y && y <= high) {
             return Err(Limit::Line);
         }
         let bucket = bucket_of(x - left, self.per_unit, self.buckets.len());
-        if self.bucket == Some(bucket) { Ok(()) } else { self.rebuild(bucket, limits, work) }
+        if self.bucket == Some(bucket) { Ok(()) } else { self.rebuild(bucket, most, work) }
     }
 
     /// The list of a bucket: what an earlier one's holds and goes on to this one, and what begins in between.
     #[inline(never)]
-    fn rebuild(&mut self, bucket: u32, limits: &Limits<S>, work: &mut Work) -> Result<(), Limit> {
+    fn rebuild(&mut self, bucket: u32, most: u32, work: &mut Work) -> Result<(), Limit> {
         // Nothing, until it is complete: the budget may run out.
         let before = self.bucket.take().filter(|&before| before < bucket);
         let kept = if before.is_some() { self.count } else { 0 };
@@ -222,10 +222,10 @@ impl<'m, S: Scalar> Line<'m, S> {
             let mut next = self.buckets.get(begins as usize).copied().ok_or(Limit::Slot)?;
             // Ends: each span names one that was filled before it.
             while next != NONE {
-                spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
+                spend(&mut work.spans_visited, most, Limit::Spans)?;
                 let span = self.span(next)?;
                 if span.last >= bucket {
-                    self.insert(next, limits, work)?;
+                    self.insert(next, most, work)?;
                 }
                 next = span.next;
             }
@@ -241,12 +241,12 @@ impl<'m, S: Scalar> Line<'m, S> {
 
     /// Puts a span into the list, in order.
     #[inline(always)]
-    fn insert(&mut self, number: u32, limits: &Limits<S>, work: &mut Work) -> Result<(), Limit> {
+    fn insert(&mut self, number: u32, most: u32, work: &mut Work) -> Result<(), Limit> {
         let span = self.span(number)?;
         let mut at = self.count;
         // Ends: `at` falls.
         while let Some(before) = at.checked_sub(1) {
-            spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
+            spend(&mut work.spans_visited, most, Limit::Spans)?;
             let other = self.active.get(before).copied().ok_or(Limit::Slot)?;
             if !span.is_before(self.span(other)?, self.order) {
                 break;
@@ -263,8 +263,8 @@ impl<'m, S: Scalar> Line<'m, S> {
     /// [`Order::Surfaces`].
     ///
     /// `search` is given a surface, the ray's planes, the range of depths in which a root matters and, if the line is one of
-    /// patches, the patches that the ray may meet; it returns the closest root that it finds. `work` is set to what this call
-    /// did.
+    /// patches, the patches that the ray may meet; and what is left of `limits`, whose budgets are for one ray, on top of what
+    /// `work` counts already. It returns the closest root that it finds. `work` grows by what this call did.
     #[inline(always)]
     pub fn closest<'v, P: Point<Scalar = S>>(
         &mut self,
@@ -277,12 +277,12 @@ impl<'m, S: Scalar> Line<'m, S> {
             &Planes<S>,
             DepthRange<S>,
             &InLine<'_, S>,
+            &Limits<S>,
             &mut Work,
         ) -> Result<Option<Root<S>>, Limit>,
     ) -> Result<Option<Hit<S>>, GaveUp<S>> {
-        *work = Work::default();
-        let nearby = match self.nearby(view.patches(), ray, limits, work) {
-            Ok(Some(nearby)) => nearby,
+        let (nearby, limits) = &match self.nearby(view.patches(), ray, limits, work) {
+            Ok(Some(found)) => found,
             Ok(None) => return Ok(None),
             Err(limit) => return Err(GaveUp { limit, best: None }),
         };
@@ -296,7 +296,7 @@ impl<'m, S: Scalar> Line<'m, S> {
             spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
             let surface = view.surface(number as usize).ok_or(Limit::Slot)?;
             let within = DepthRange { min: range.min, max: farthest };
-            if let Some(root) = search(&surface, planes, within, in_line, work)? {
+            if let Some(root) = search(&surface, planes, within, in_line, limits, work)? {
                 // As in `Scene::closest`.
                 let closer = |(old, other): (Root<S>, u32)| {
                     root.depth < old.depth || (root.depth == old.depth && number < other)
@@ -314,7 +314,7 @@ impl<'m, S: Scalar> Line<'m, S> {
         }
     }
 
-    /// The spans that may hold a ray; `None` if none does.
+    /// The spans that may hold a ray, and the budgets of this call on top of what `work` counts already; `None` if no span does.
     #[inline(always)]
     pub(crate) fn nearby<'l>(
         &'l mut self,
@@ -322,12 +322,16 @@ impl<'m, S: Scalar> Line<'m, S> {
         ray: &ViewRay<S>,
         limits: &Limits<S>,
         work: &mut Work,
-    ) -> Result<Option<InLine<'l, S>>, Limit> {
-        self.go_to(ray, limits, work)?;
+    ) -> Result<Option<(InLine<'l, S>, Limits<S>)>, Limit> {
+        let most = limits.spans.saturating_add(work.spans_visited);
+        self.go_to(ray, most, work)?;
         let mut nearby =
             InLine { spans: self.spans, list: self.active.get(..self.count).unwrap_or(&[]), x: ray.place[0], patches };
         nearby.skip();
-        Ok(if nearby.list.is_empty() { None } else { Some(nearby) })
+        if nearby.list.is_empty() {
+            return Ok(None);
+        }
+        Ok(Some((nearby, Limits { spans: most, ..limits.beyond(work) })))
     }
 }
 
@@ -380,7 +384,7 @@ impl<'l, S: Scalar> InLine<'l, S> {
     }
 
     /// Calls `visit` with each patch whose parallelepiped the ray meets, and its surface's number: in the order of the list, up to
-    /// the depth that `visit` returned last.
+    /// the depth that `visit` returned last. Patches for which `skip` says so are left out untested.
     #[inline(always)]
     pub(crate) fn visit(
         &self,
@@ -388,6 +392,7 @@ impl<'l, S: Scalar> InLine<'l, S> {
         mut farthest: S,
         limits: &Limits<S>,
         work: &mut Work,
+        skip: impl Fn(u32, &Patch<S>) -> bool,
         mut visit: impl FnMut(u32, &Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
     ) -> Result<(), Limit> {
         for &number in self.list {
@@ -400,6 +405,9 @@ impl<'l, S: Scalar> InLine<'l, S> {
                 break;
             }
             let patch = self.patches.get(span.patch as usize).ok_or(Limit::Slot)?;
+            if skip(span.surface, patch) {
+                continue;
+            }
             spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
             if let Some(crossing) = patch.bounds().crossing(planes) {
                 farthest = visit(span.surface, patch, &crossing, work)?;
@@ -432,7 +440,14 @@ impl<S: Scalar> Along<S> for InLine<'_, S> {
         work: &mut Work,
         mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
     ) -> Result<(), Limit> {
-        self.visit(planes, range.max, limits, work, |_, patch, crossing, work| visit(patch, crossing, work))
+        self.visit(
+            planes,
+            range.max,
+            limits,
+            work,
+            |_, _| false,
+            |_, patch, crossing, work| visit(patch, crossing, work),
+        )
     }
 
     /// Front to back as well: the way to the nearest patch in the line is short.
@@ -445,9 +460,14 @@ impl<S: Scalar> Along<S> for InLine<'_, S> {
         work: &mut Work,
         mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<bool, Limit>,
     ) -> Result<(), Limit> {
-        self.visit(planes, range.max, limits, work, |_, patch, crossing, work| {
-            Ok(if visit(patch, crossing, work)? { range.max } else { S::LEAST })
-        })
+        self.visit(
+            planes,
+            range.max,
+            limits,
+            work,
+            |_, _| false,
+            |_, patch, crossing, work| Ok(if visit(patch, crossing, work)? { range.max } else { S::LEAST }),
+        )
     }
 }
 

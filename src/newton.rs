@@ -42,6 +42,8 @@ impl<S> Root<S> {
 /// The projected surface near a point, to first order: what one step of Newton's method is made of.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Local<S> {
+    /// (u, v) of the point.
+    at: [S; 2],
     f_g: [S; 2],
     du: [S; 2],
     dv: [S; 2],
@@ -65,7 +67,7 @@ impl<S: Scalar> Local<S> {
         let (f_g, [fu, gu], [fv, gv]) = (jet.point.f_g(), jet.du.f_g(), jet.dv.f_g());
         let determinant = fu * gv - gu * fv;
         let size = (fu.abs() + gu.abs()) * (fv.abs() + gv.abs());
-        Ok(Local { f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight: jet.point.weight() })
+        Ok(Local { at, f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight: jet.point.weight() })
     }
 
     /// |f| + |g|, times the weight.
@@ -136,7 +138,46 @@ impl<S: Scalar> Local<S> {
     }
 }
 
-/// A root, and the surface there to first order.
+/// A root around which no other can lie: how near is told by the surface's derivatives near the root and by how much they can
+/// change.
+///
+/// With δ the way from the root to another one, J the Jacobian at a point that lies off the root by σ, and b the bounds of
+/// [`Net::bend`](crate::surface::Net::bend), Taylor's theorem gives |J δ| ≤ (b₀ (|δ_u| + 2 σ_u) + b₁ σ_v) |δ_u| + (b₁ (|δ_u| + σ_u) +
+/// b₂ (|δ_v| + 2 σ_v)) |δ_v|. Let the brackets be at most α and β. With |δ| ≤ (a, b) · |J δ|, where a and b are the row sums of |J⁻¹|, this is
+/// |J δ| ≤ (a α + b β) |J δ|: so where a α + b β < 1, there is no δ but 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Alone<S> {
+    root: [S; 2],
+    /// σ.
+    off: [S; 2],
+    /// a and b.
+    inverse: [S; 2],
+    bend: [S; 3],
+}
+
+impl<S: Scalar> Alone<S> {
+    /// Of a root on a surface, near which `local` holds.
+    #[inline(always)]
+    pub(crate) fn new(root: &Root<S>, local: &Local<S>, bend: [S; 3]) -> Self {
+        let root = [root.u, root.v];
+        let off = [0, 1].map(|k| (root[k] - local.at[k]).abs());
+        // A Jacobian that may be all rounding says nothing.
+        let one = if local.may_be_singular() { S::INFINITY } else { S::ONE };
+        Alone { root, off, inverse: local.inverse_bounds(one), bend }
+    }
+
+    /// Whether it is proved that no other root lies in a rectangle of the surface's domain. A NaN proves nothing.
+    #[inline(always)]
+    pub(crate) fn within(&self, [[u0, u1], [v0, v1]]: [[S; 2]; 2]) -> bool {
+        let Alone { root: [u, v], off: [off_u, off_v], inverse: [a, b], bend: [uu, uv, vv] } = *self;
+        let (far_u, far_v) = ((u - u0).greater(u1 - u), (v - v0).greater(v1 - v));
+        let alpha = uu * (far_u + off_u + off_u) + uv * off_v;
+        let beta = uv * (far_u + off_u) + vv * (far_v + off_v + off_v);
+        a * alpha + b * beta < S::from_f64(0.999)
+    }
+}
+
+/// A root, and the surface near it to first order.
 type Followed<S> = (Root<S>, Local<S>);
 
 /// Where a search ended: (u, v), and the surface there or nearby.

@@ -39,7 +39,7 @@ pub fn closest<P: Point>(
     })
 }
 
-/// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`. `work` is set to what the call did.
+/// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`. `work` grows by what the call did.
 ///
 /// `line` is the ray's, one of surfaces, or of patches in [`Order::Surfaces`](crate::line::Order::Surfaces) where there are
 /// any: then of each surface no more is clipped than the smallest region that holds all patches that the ray meets.
@@ -51,7 +51,7 @@ pub fn closest_in_view<P: Point>(
     room: &mut ClipRoom<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    line.closest(view, ray, limits, work, |surface, planes, range, along, work| {
+    line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
         let mut region = Some(Region::WHOLE);
         if view.has_patches() {
             region = None;

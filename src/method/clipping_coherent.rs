@@ -58,7 +58,8 @@ pub fn closest<P: Point>(
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
 /// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::line::Order::Surfaces); it leads the testing ray, and no
-/// grid is walked. All else is as for [`closest`].
+/// grid is walked. All else is as for [`closest`],
+/// but `work` grows by what the call did.
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
@@ -70,7 +71,7 @@ pub fn closest_in_view<P: Point>(
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let stamp = scan_line.wrapping_add(1);
-    line.closest(view, ray, limits, work, |surface, planes, range, along, work| {
+    line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
         let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
         search(Clipper { surface, planes, limits, room }, along, range.min, slot, stamp, work)
     })

@@ -18,6 +18,7 @@ use super::follow::{Best, Following};
 use crate::clipper::{ClipRoom, Clipper, Single};
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::{InLine, Line};
+use crate::newton::Alone;
 use crate::patch::Patch;
 use crate::planes::DepthRange;
 use crate::point::Point;
@@ -36,7 +37,7 @@ const WINDOW: f64 = 0.002;
 ///
 /// `line` is the ray's, one of patches in [`Order::Depth`](crate::line::Order::Depth). `memory` is lent, and to be left alone
 /// between rays of one scan line. `scan_line` numbers the line: a number that no earlier line with this memory had begins
-/// with no coherence (at most 2³² − 2). `work` is set to what the call did.
+/// with no coherence (at most 2³² − 2). `work` grows by what the call did.
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
@@ -47,17 +48,16 @@ pub fn closest_in_view<P: Point>(
     room: &mut ClipRoom<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    *work = Work::default();
     let last = core::mem::replace(&mut memory.last, u32::MAX);
-    let nearby = match line.nearby(view.patches(), ray, limits, work) {
-        Ok(Some(nearby)) => nearby,
+    let (nearby, limits) = &match line.nearby(view.patches(), ray, limits, work) {
+        Ok(Some(found)) => found,
         Ok(None) => return Ok(None),
         Err(limit) => return Err(GaveUp { limit, best: None }),
     };
     let ray = &view.facing(ray);
     let mut best = None;
     let ended =
-        closest_so_far(view, nearby, memory, last, scan_line.wrapping_add(1), ray, limits, room, &mut best, work);
+        closest_so_far(view, *nearby, memory, last, scan_line.wrapping_add(1), ray, limits, room, &mut best, work);
     let best = best.map(|Best { root, surface, .. }| root.hit(surface, ray.planes.t(root.depth)));
     match ended {
         Ok(()) => Ok(best),
@@ -134,28 +134,27 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
             return Ok(false);
         }
         work.intersection_points += 1;
-        *best = Some(Best { root: point, surface, local: Some(local) });
-        let (mut owned, mut alone) = (false, true);
-        // The root may lie off by the tolerance, before the box that holds it.
-        let slack = limits.tolerance * P::Scalar::TWO;
-        nearby.visit(&ray.planes, point.depth + slack, limits, work, |number, patch, crossing, work| {
+        *best = Some(Best::new(point, surface, &local, ray));
+        let alone = Alone::new(&point, &local, of_window.bend);
+        // Patches of the point's own sheet, where it is proved to be the only point, need no test.
+        let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().sides());
+        let mut verified = true;
+        nearby.visit(&ray.planes, point.depth, limits, work, exempt, |number, patch, crossing, work| {
             let farthest = best.map_or(point.depth, |best| best.root.depth);
-            if number == surface && patch.domain().holds(point.u, point.v) {
-                owned = true;
-                if met_at_most_once(patch, crossing, limits) {
-                    return Ok(farthest + slack);
-                }
-            } else if !reaches(crossing, &DepthRange { min: ray.range.min, max: farthest }) {
-                return Ok(farthest + slack);
+            let owner = number == surface && patch.domain().holds(point.u, point.v);
+            let known = if owner {
+                met_at_most_once(patch, crossing, limits)
+            } else {
+                !reaches(crossing, &DepthRange { min: ray.range.min, max: farthest })
+            };
+            if known {
+                return Ok(farthest);
             }
-            alone = false;
+            verified = false;
             self.clip(number, patch, best, work)?;
-            Ok(best.map_or(farthest, |best| best.root.depth) + slack)
+            Ok(best.map_or(farthest, |best| best.root.depth))
         })?;
-        if !owned && best.is_some_and(|best| best.surface == surface && best.root == point) {
-            return Ok(false);
-        }
-        if alone {
+        if verified {
             work.verified += 1;
         } else {
             work.decided_by_list += 1;
@@ -167,13 +166,20 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
     fn in_full(&mut self, best: &mut Option<Best<P::Scalar>>, work: &mut Work) -> Result<(), Limit> {
         let (ray, limits, nearby) = (self.ray, self.limits, self.nearby);
         work.full_searches += 1;
-        nearby.visit(&ray.planes, ray.range.max, limits, work, |number, patch, crossing, work| {
-            let range = DepthRange { min: ray.range.min, max: best.map_or(ray.range.max, |best| best.root.depth) };
-            if crossing.overlaps(&range) {
-                self.clip(number, patch, best, work)?;
-            }
-            Ok(best.map_or(ray.range.max, |best| best.root.depth))
-        })
+        nearby.visit(
+            &ray.planes,
+            ray.range.max,
+            limits,
+            work,
+            |_, _| false,
+            |number, patch, crossing, work| {
+                let range = DepthRange { min: ray.range.min, max: best.map_or(ray.range.max, |best| best.root.depth) };
+                if crossing.overlaps(&range) {
+                    self.clip(number, patch, best, work)?;
+                }
+                Ok(best.map_or(ray.range.max, |best| best.root.depth))
+            },
+        )
     }
 
     /// All roots in the domain of one patch.
@@ -185,10 +191,10 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         work: &mut Work,
     ) -> Result<(), Limit> {
         let surface = self.view.surface(number as usize).ok_or(Limit::Slot)?;
-        let planes = &self.ray.planes;
+        let ray = self.ray;
         let domain = Region { sides: patch.domain().bounds(), ..Region::WHOLE };
         self.clipper(&surface)?.roots_within(domain, work, |root, local, work| {
-            Best::keep(best, Best { root, surface: number, local: Some(local) }, planes, work);
+            Best::keep(best, Best::new(root, number, &local, ray), &ray.planes, work);
         })
     }
 

@@ -50,20 +50,17 @@ impl<S: Scalar> Followed<S> {
 
     /// Keeps what a ray found.
     #[inline(always)]
-    pub(super) fn keep(&mut self, Best { root, local, .. }: &Best<S>, ray: &Facing<S>, stamp: u32) {
+    pub(super) fn keep(&mut self, &Best { root, rate, .. }: &Best<S>, ray: &Facing<S>, stamp: u32) {
         let x = ray.x;
         let at = [root.u, root.v];
-        let mut rates = [[S::ZERO; 2]; 3];
-        if let Some(rate) = local.as_ref().and_then(|local| local.rate(root.depth + ray.ahead, ray.turning)) {
-            rates[0] = rate;
-            let (step, old) = (x - self.x, self.rates[0]);
-            if self.stamp == stamp && old != [S::ZERO; 2] && step != S::ZERO {
-                let inverse = S::ONE / step;
-                for k in 0..2 {
-                    let mean = (at[k] - self.at[k]) * inverse;
-                    rates[1][k] = (old[k] + rate[k] + rate[k] - mean - mean - mean) * inverse;
-                    rates[2][k] = (old[k] + rate[k] - mean - mean) * (inverse * inverse);
-                }
+        let mut rates = [rate, [S::ZERO; 2], [S::ZERO; 2]];
+        let (step, old) = (x - self.x, self.rates[0]);
+        if self.stamp == stamp && rate != [S::ZERO; 2] && old != [S::ZERO; 2] && step != S::ZERO {
+            let inverse = S::ONE / step;
+            for k in 0..2 {
+                let mean = (at[k] - self.at[k]) * inverse;
+                rates[1][k] = (old[k] + rate[k] + rate[k] - mean - mean - mean) * inverse;
+                rates[2][k] = (old[k] + rate[k] - mean - mean) * (inverse * inverse);
             }
         }
         *self = Followed { at, rates, x, stamp };
@@ -75,11 +72,18 @@ impl<S: Scalar> Followed<S> {
 pub(super) struct Best<S> {
     pub(super) root: Root<S>,
     pub(super) surface: u32,
-    /// The surface there to first order, if it is known.
-    pub(super) local: Option<Local<S>>,
+    /// How fast (u, v) moves along the line there, per unit of x; 0 if that is not known.
+    pub(super) rate: [S; 2],
 }
 
 impl<S: Scalar> Best<S> {
+    /// A root of a ray on a surface, near which `local` holds.
+    #[inline(always)]
+    pub(super) fn new(root: Root<S>, surface: u32, local: &Local<S>, ray: &Facing<S>) -> Self {
+        let rate = local.rate(root.depth + ray.ahead, ray.turning).unwrap_or([S::ZERO; 2]);
+        Best { root, surface, rate }
+    }
+
     /// Counts a root as an intersection point if it lies in the ray's interval, and keeps it if it is closer; of equal ones that
     /// of the lower surface, so that the answer does not depend on the order of search.
     #[inline(always)]

@@ -50,7 +50,8 @@ pub fn closest<P: Point>(
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
 /// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::line::Order::Surfaces): it leads to the patches, and no
-/// tree is descended. All else is as for [`closest`].
+/// tree is descended. All else is as for [`closest`],
+/// but `work` grows by what the call did.
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
@@ -59,7 +60,7 @@ pub fn closest_in_view<P: Point>(
     scratch: &mut ScratchView<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    line.closest(view, ray, limits, work, |surface, planes, range, along, work| {
+    line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
         let mut best = None;
         let mut solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
         along.ahead(planes, &range, limits, work, |patch, crossing, work| {

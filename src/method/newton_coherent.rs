@@ -58,7 +58,8 @@ pub fn closest<P: Point>(
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
 /// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::line::Order::Surfaces); instead of walking grids, the
-/// full search and the testing ray are led by it. All else is as for [`closest`].
+/// full search and the testing ray are led by it. All else is as for [`closest`],
+/// but `work` grows by what the call did.
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
@@ -70,7 +71,7 @@ pub fn closest_in_view<P: Point>(
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let stamp = scan_line.wrapping_add(1);
-    line.closest(view, ray, limits, work, |surface, planes, range, along, work| {
+    line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
         let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
         let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
         Search { solver, along, range }.run(slot, stamp, work)

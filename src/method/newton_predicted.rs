@@ -14,7 +14,8 @@ use super::follow::{Best, Following};
 use super::starts::{First, from_patch};
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::{InLine, Line};
-use crate::newton::Solver;
+use crate::newton::{Alone, Solver};
+use crate::patch::Patch;
 use crate::planes::DepthRange;
 use crate::point::Point;
 use crate::ray::Hit;
@@ -26,7 +27,7 @@ use crate::view::{Facing, View, ViewRay};
 ///
 /// `line` is the ray's, one of patches in [`Order::Depth`](crate::line::Order::Depth). `memory` is lent, and to be left alone
 /// between rays of one scan line. `scan_line` numbers the line: a number that no earlier line with this memory had begins
-/// with no coherence (at most 2³² − 2). `work` is set to what the call did.
+/// with no coherence (at most 2³² − 2). `work` grows by what the call did.
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
@@ -37,17 +38,16 @@ pub fn closest_in_view<P: Point>(
     scratch: &mut ScratchView<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    *work = Work::default();
     let last = core::mem::replace(&mut memory.last, u32::MAX);
-    let nearby = match line.nearby(view.patches(), ray, limits, work) {
-        Ok(Some(nearby)) => nearby,
+    let (nearby, limits) = &match line.nearby(view.patches(), ray, limits, work) {
+        Ok(Some(found)) => found,
         Ok(None) => return Ok(None),
         Err(limit) => return Err(GaveUp { limit, best: None }),
     };
     let ray = &view.facing(ray);
     let mut best = None;
     let ended =
-        closest_so_far(view, nearby, memory, last, scan_line.wrapping_add(1), ray, limits, scratch, &mut best, work);
+        closest_so_far(view, *nearby, memory, last, scan_line.wrapping_add(1), ray, limits, scratch, &mut best, work);
     let best = best.map(|Best { root, surface, .. }| root.hit(surface, ray.planes.t(root.depth)));
     match ended {
         Ok(()) => Ok(best),
@@ -86,9 +86,10 @@ fn closest_so_far<P: Point>(
     }
     if let Some(best) = best {
         // Of a root that a patch led to, for the next ray's sake.
-        if best.local.is_none() {
+        if best.rate == [P::Scalar::ZERO; 2] {
             search.solver.turn_to(&view.surface(best.surface as usize).ok_or(Limit::Slot)?);
-            best.local = Some(search.solver.local([best.root.u, best.root.v], work)?);
+            let local = search.solver.local([best.root.u, best.root.v], work)?;
+            *best = Best::new(best.root, best.surface, &local, ray);
         }
         memory.last = best.surface;
         memory.slots.get_mut(best.surface as usize).ok_or(Limit::Memory)?.keep(best, ray, stamp);
@@ -122,31 +123,30 @@ impl<P: Point> Search<'_, '_, '_, P> {
             return Ok(false);
         }
         work.intersection_points += 1;
-        *best = Some(Best { root: point, surface, local: Some(local) });
-        let (mut owned, mut alone) = (false, true);
-        // The point may lie off by the tolerance, before the box that holds it.
-        let slack = limits.tolerance * P::Scalar::TWO;
-        nearby.visit(planes, point.depth + slack, limits, work, |number, patch, crossing, work| {
+        *best = Some(Best::new(point, surface, &local, ray));
+        let alone = Alone::new(&point, &local, solver.surface.bend);
+        // Patches of the point's own sheet, where it is proved to be the only point, need no test.
+        let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().sides());
+        let mut verified = true;
+        nearby.visit(planes, point.depth, limits, work, exempt, |number, patch, crossing, work| {
             let farthest = best.map_or(point.depth, |best| best.root.depth);
-            if number == surface && patch.domain().holds(point.u, point.v) {
-                owned = true;
-                if met_at_most_once(patch, crossing, limits) {
-                    return Ok(farthest + slack);
-                }
-            } else if !reaches(crossing, &DepthRange { min: ray.range.min, max: farthest }) {
-                return Ok(farthest + slack);
+            let owner = number == surface && patch.domain().holds(point.u, point.v);
+            let known = if owner {
+                met_at_most_once(patch, crossing, limits)
+            } else {
+                !reaches(crossing, &DepthRange { min: ray.range.min, max: farthest })
+            };
+            if known {
+                return Ok(farthest);
             }
-            alone = false;
+            verified = false;
             solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
             if let Some(root) = from_patch(solver, patch, crossing, First::Entrance, work)? {
-                Best::keep(best, Best { root, surface: number, local: None }, planes, work);
+                Best::keep(best, Best { root, surface: number, rate: [P::Scalar::ZERO; 2] }, planes, work);
             }
-            Ok(best.map_or(farthest, |best| best.root.depth) + slack)
+            Ok(best.map_or(farthest, |best| best.root.depth))
         })?;
-        if !owned && best.is_some_and(|best| best.surface == surface && best.root == point) {
-            return Ok(false);
-        }
-        if alone {
+        if verified {
             work.verified += 1;
         } else {
             work.decided_by_list += 1;
@@ -159,15 +159,22 @@ impl<P: Point> Search<'_, '_, '_, P> {
         let Search { view, ray, nearby, solver } = self;
         let (planes, limits) = (&ray.planes, solver.limits);
         work.full_searches += 1;
-        nearby.visit(planes, ray.range.max, limits, work, |number, patch, crossing, work| {
-            let range = DepthRange { min: ray.range.min, max: best.map_or(ray.range.max, |best| best.root.depth) };
-            if crossing.overlaps(&range) {
-                solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
-                if let Some(root) = from_patch(solver, patch, crossing, First::AsCritical, work)? {
-                    Best::keep(best, Best { root, surface: number, local: None }, planes, work);
+        nearby.visit(
+            planes,
+            ray.range.max,
+            limits,
+            work,
+            |_, _| false,
+            |number, patch, crossing, work| {
+                let range = DepthRange { min: ray.range.min, max: best.map_or(ray.range.max, |best| best.root.depth) };
+                if crossing.overlaps(&range) {
+                    solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
+                    if let Some(root) = from_patch(solver, patch, crossing, First::AsCritical, work)? {
+                        Best::keep(best, Best { root, surface: number, rate: [P::Scalar::ZERO; 2] }, planes, work);
+                    }
                 }
-            }
-            Ok(best.map_or(ray.range.max, |best| best.root.depth))
-        })
+                Ok(best.map_or(ray.range.max, |best| best.root.depth))
+            },
+        )
     }
 }
