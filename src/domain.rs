@@ -109,8 +109,17 @@ fn level(index: u16) -> u32 {
 /// 2^−level.
 #[inline(always)]
 fn width<S: Scalar>(index: u16) -> S {
-    // A power of two of at most 2^15 converts exactly, and so does its quotient.
-    S::ONE / S::from_u32(1 << level(index))
+    const WIDTHS: [f64; 16] = {
+        let mut widths = [1.0; 16];
+        let mut level = 1;
+        while level < 16 {
+            widths[level] = widths[level - 1] * 0.5;
+            level += 1;
+        }
+        widths
+    };
+    // The mask says to the compiler what is so in any case.
+    S::from_f64(WIDTHS[level(index) as usize & 15])
 }
 
 #[cfg(test)]

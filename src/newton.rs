@@ -56,7 +56,7 @@ pub(crate) struct Local<S> {
 
 impl<S: Scalar> Local<S> {
     /// Of a projected net, at (u, v).
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn at<F: Flat<Scalar = S>>(
         at: [S; 2],
         degrees: Degrees,
@@ -267,6 +267,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     }
 
     /// As [`Solver::solve`], and the surface there to first order.
+    #[inline(always)]
     pub(crate) fn follow(
         &mut self,
         start: [P::Scalar; 2],
