@@ -1,9 +1,10 @@
-//! The camera: the ray of each pixel.
+//! The camera: the ray of each sample.
 use serde::Deserialize;
 use toml::Spanned;
 
 use super::check::Check;
 use super::error::InputError;
+use super::sampling::{self, Sampling, ScanLine};
 
 /// A camera as a scene file gives it, in one of two ways.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,10 +33,11 @@ pub enum Camera {
     },
 }
 
-/// The rays of an image of a given size. With W and H its width and height and S the larger of the two, pixel (px, py),
-/// py = 0 being the top row, has the direction forward + sx · right + sy · up, where
-/// sx = (2 px − (W − 1)) / S and sy = ((H − 1) − 2 py) / S: the centre of a pixel, pixels square, -1 to 1 over the longer
-/// side of the image from edge to edge.
+/// The rays of an image of a given size. A sample with the image coordinates (sx, sy) has the direction
+/// forward + sx · right + sy · up. Pixels are square, and coordinates go from -1 to 1 over the longer side of the image from
+/// edge to edge: with W and H its width and height and S the larger of the two, the centre of pixel (px, py), py = 0 being
+/// the top row, is at sx = (2 px − (W − 1)) / S and sy = ((H − 1) − 2 py) / S. Which samples there are says
+/// [`View::sampling`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Where all rays start.
@@ -48,6 +50,8 @@ pub struct View {
     pub up: [f64; 3],
     /// Width and height in pixels, each at least 1.
     pub size: [u32; 2],
+    /// Where pixels are sampled.
+    pub sampling: Sampling,
 }
 
 /// How near to flat the three vectors of a camera may be: the volume that they span, each divided by its length. More
@@ -55,10 +59,12 @@ pub struct View {
 const FLAT: f64 = 1e-9;
 
 impl Camera {
-    /// The rays of an image of `size`: width and height in pixels, each at least 1.
+    /// The rays of an image of `size`: width and height in pixels, each at least 1. One sample per pixel; for others see
+    /// [`View::sampled`].
     pub fn view(&self, size: [u32; 2]) -> View {
+        let sampling = Sampling::One;
         match *self {
-            Self::Vectors { eye, forward, right, up } => View { eye, forward, right, up, size },
+            Self::Vectors { eye, forward, right, up } => View { eye, forward, right, up, size, sampling },
             Self::LookAt { eye, look_at, up, fov } => {
                 let forward = unit([0, 1, 2].map(|axis| look_at[axis] - eye[axis]));
                 let right = unit(cross(forward, unit(up)));
@@ -66,20 +72,41 @@ impl Camera {
                 // The top edge of the image, half a pixel above the top row, has sy = H / S.
                 let [width, height] = size.map(f64::from);
                 let half = (fov.to_radians() / 2.0).tan() * width.max(height) / height;
-                View { eye, forward, right: right.map(|x| half * x), up: upward.map(|x| half * x), size }
+                let (right, up) = (right.map(|x| half * x), upward.map(|x| half * x));
+                View { eye, forward, right, up, size, sampling }
             }
         }
     }
 }
 
 impl View {
+    /// The same view with pixels sampled so.
+    pub fn sampled(self, sampling: Sampling) -> View {
+        View { sampling, ..self }
+    }
+
+    /// The number of scan lines: one for each row of samples.
+    pub fn scan_lines(&self) -> u32 {
+        self.sampling.side() * self.size[1]
+    }
+
+    /// The samples of scan line `line`, 0 being the top one.
+    pub fn scan_line(&self, line: u32) -> ScanLine {
+        sampling::scan_line(self.sampling, self.size, line)
+    }
+
+    /// The direction, not normalised, of the ray of the sample with these image coordinates.
+    pub fn towards(&self, [sx, sy]: [f64; 2]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.forward[axis] + sx * self.right[axis] + sy * self.up[axis])
+    }
+
     /// The direction, not normalised, of the ray through the centre of pixel (`px`, `py`), (0, 0) being the top left one.
     pub fn direction(&self, px: u32, py: u32) -> [f64; 3] {
         let [width, height] = self.size.map(f64::from);
         let longer = width.max(height);
         let sx = (2.0 * f64::from(px) - (width - 1.0)) / longer;
         let sy = ((height - 1.0) - 2.0 * f64::from(py)) / longer;
-        [0, 1, 2].map(|axis| self.forward[axis] + sx * self.right[axis] + sy * self.up[axis])
+        self.towards([sx, sy])
     }
 }
 
@@ -204,6 +231,44 @@ mod tests {
                 assert!((corner[axis] - expected[axis]).abs() < 1e-14, "{corner:?} {expected:?}");
             }
         }
+    }
+
+    #[test]
+    fn one_sample_per_pixel_is_its_centre_to_the_bit() {
+        let camera = Camera::LookAt { eye: [1.0, -5.0, 2.0], look_at: [0.3; 3], up: [0.0, 0.0, 1.0], fov: 33.0 };
+        for size in [[7, 5], [5, 7], [1, 1]] {
+            let view = camera.view(size);
+            assert_eq!(view.scan_lines(), size[1]);
+            for py in 0..size[1] {
+                let line = view.scan_line(py);
+                let directions: Vec<_> = line.samples.iter().map(|&sample| view.towards(sample)).collect();
+                assert_eq!(directions, (0..size[0]).map(|px| view.direction(px, py)).collect::<Vec<_>>());
+                assert!(line.samples.iter().all(|sample| line.sy == [sample[1]; 2]));
+            }
+        }
+    }
+
+    #[test]
+    fn four_samples_stand_around_the_centre_of_their_pixel() {
+        let camera =
+            Camera::Vectors { eye: [0.0; 3], forward: [0.0, 1.0, 0.0], right: [1.0, 0.0, 0.0], up: [0.0, 0.0, 1.0] };
+        let view = camera.view([6, 4]).sampled(Sampling::Uniform);
+        assert_eq!(view.scan_lines(), 8);
+        let lines: Vec<_> = (0..8).map(|line| view.scan_line(line)).collect();
+        for (px, py) in (0..6).flat_map(|px| (0..4).map(move |py| (px, py))) {
+            let (columns, rows) = (2 * px..2 * px + 2, 2 * py..2 * py + 2);
+            let mut mean = [0.0; 3];
+            for sample in
+                rows.flat_map(|row| columns.clone().map(|column| lines[row].samples[column]).collect::<Vec<_>>())
+            {
+                mean = [0, 1, 2].map(|axis| mean[axis] + view.towards(sample)[axis] / 4.0);
+            }
+            let centre = view.direction(px as u32, py as u32);
+            assert!((0..3).all(|axis| (mean[axis] - centre[axis]).abs() < 1e-15), "{mean:?} {centre:?}");
+        }
+        // From the top down, and from left to right.
+        assert!(lines.windows(2).all(|pair| pair[0].sy[0] > pair[1].sy[1]));
+        assert!(lines[0].samples.windows(2).all(|pair| pair[0][0] < pair[1][0]));
     }
 
     #[test]

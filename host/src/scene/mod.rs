@@ -11,6 +11,7 @@ pub mod nearest;
 pub mod nurbs_python;
 pub mod patches;
 pub mod rays;
+pub mod sampling;
 pub mod shapes;
 pub mod source;
 pub mod spline;

@@ -12,14 +12,18 @@ use super::model::{Model, ModelSurface};
 pub struct Random(pub u64);
 
 impl Random {
-    /// The next number, evenly spread over `low <= x < high`.
-    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+    /// The next 64 random bits.
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        low + (high - low) * ((z >> 11) as f64 / (1u64 << 53) as f64)
+        z ^ (z >> 31)
+    }
+
+    /// The next number, evenly spread over `low <= x < high`.
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)
     }
 
     /// The next point of the cube that reaches `half` to either side of 0.
