@@ -9,6 +9,7 @@ use crate::lower::Stages;
 use crate::memory::Bytes;
 use crate::prepared::Prepared;
 use crate::scanline::{LaneBytes, Tally};
+use crate::scene::sampling::Sampling;
 use crate::scene::trace::{Method, Precision};
 use crate::settings::Settings;
 
@@ -43,6 +44,9 @@ pub struct Stats {
     /// Width and height, for a picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<[u32; 2]>,
+    /// The samples of a pixel, for a picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub samples: Option<Sampling>,
     /// The method.
     pub method: Method,
     /// The precision.
@@ -102,6 +106,7 @@ impl Stats {
             scene,
             ray_file: None,
             size: None,
+            samples: None,
             method: settings.method,
             precision: settings.precision,
             asked: Asked::Closest,

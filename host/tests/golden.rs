@@ -37,7 +37,7 @@ fn every_method_draws_the_recorded_picture() {
             let settings = Settings { method, precision, ..Settings::default() };
             let prepared = Prepared::build(&scene.model, Stages::of(method), &settings).expect("the teapot is valid");
             let tracer = prepared.tracer(&settings);
-            let drawn = draw(tracer.as_ref(), &view, description, &ProgressBar::hidden());
+            let drawn = draw(tracer.as_ref(), &view, &scene.appearance, &ProgressBar::hidden());
             let mut png = Vec::new();
             drawn.picture.write_png(&mut png).expect("memory does not fail");
             let drawn = image::load_from_memory(&png).expect("what was written can be read").to_rgb8();

@@ -19,8 +19,9 @@ use crate::oracle::Oracle;
 use crate::output::{Output, OutputError};
 use crate::picture::Picture;
 use crate::prepared::Prepared;
+use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
-use crate::scene::file::{Description, Scene};
+use crate::scene::file::Scene;
 use crate::scene::model::Model;
 use crate::scene::teapot::common_scene;
 use crate::scene::trace::{Method, Precision};
@@ -93,7 +94,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
         });
     }
     check_outputs(Some(&output), &[], flags)?;
-    let Scene { model, description, .. } = common_scene()?;
+    let Scene { model, description, appearance, .. } = common_scene()?;
     let settings = Settings::of_flags(flags);
     let mut png = Output::create(&output)?;
     let stats_outputs = StatsOutputs::create(flags)?;
@@ -102,7 +103,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
 
     let (truths, oracle) = pool.install(|| ask_oracle(&Oracle::new(&model), &view, flags.quiet));
     let (runs, picture) =
-        compare(&model, &description, &view, &combinations(flags, &settings), &pool, (&truths, &oracle), flags.quiet)?;
+        compare(&model, &appearance, &view, &combinations(flags, &settings), &pool, (&truths, &oracle), flags.quiet)?;
     if let Some(picture) = picture {
         picture.write_png(&mut png).map_err(|reason| png.failed(reason))?;
     }
@@ -123,7 +124,7 @@ const PASSES: usize = 5;
 /// Draws the view with all `settings`, and holds their answers against the truths; also the picture of the last.
 fn compare(
     model: &Model,
-    description: &Description,
+    appearance: &Appearance,
     view: &View,
     settings: &[Settings],
     pool: &ThreadPool,
@@ -139,7 +140,7 @@ fn compare(
     let bar = progress((PASSES * settings.len()) as u64 * u64::from(view.size[1]), "drawing", quiet);
     let passes = (0..PASSES).map(|_| {
         let draw = |(settings, prepared, _): &(&Settings, Prepared, f64)| {
-            pool.install(|| draw(prepared.tracer(settings).as_ref(), view, description, &bar))
+            pool.install(|| draw(prepared.tracer(settings).as_ref(), view, appearance, &bar))
         };
         ready.iter().map(draw).collect::<Vec<Drawn>>()
     });
@@ -163,6 +164,7 @@ fn compare(
         let (scene, lane) = ("teapot".to_owned(), prepared.tracer(settings).lane_bytes());
         let mut stats = Stats::new(scene, settings, prepared, *prepare_seconds, lane, &drawn.tally);
         stats.size = Some(view.size);
+        stats.samples = Some(view.sampling);
         let ns_per_ray = stats.intersect_seconds / stats.rays.max(1) as f64 * 1e9;
         let times_oracle = oracle.seconds / stats.intersect_seconds.max(f64::MIN_POSITIVE);
         runs.push(Run { stats, ns_per_ray, times_oracle, agreement });

@@ -8,6 +8,7 @@ use std::time::Instant;
 use super::{Failure, say};
 use crate::lower::{LowerError, Stages};
 use crate::prepared::{Prepared, unfit_for};
+use crate::scene::appearance::Appearance;
 use crate::scene::error::{OnInvalid, Skipped};
 use crate::scene::file::{self, Description, Scene};
 use crate::scene::model::Model;
@@ -22,8 +23,8 @@ pub struct Loaded {
     pub model: Model,
     /// Which of them come from which file.
     pub files: Vec<LoadedFile>,
-    /// What the scene file says, if there is one.
-    pub description: Option<Description>,
+    /// What the scene file says, if there is one, and what its surfaces look like.
+    pub scene: Option<(Description, Appearance)>,
     /// How to trace.
     pub settings: Settings,
 }
@@ -44,7 +45,7 @@ pub struct LoadedFile {
 /// A file is refused.
 pub fn scene(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
     let scene = file::read(path, flags.on_invalid())?;
-    let Scene { source, description, model, files } = scene;
+    let Scene { source, description, model, files, appearance } = scene;
     let settings = Settings::of_scene(flags, &description.trace, &source)?;
     for file in &files {
         name_skipped(&file.skipped);
@@ -55,7 +56,7 @@ pub fn scene(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
         splines: file.splines,
     });
     let files = files.inspect(LoadedFile::name_trims).collect();
-    Loaded { model, files, description: Some(description), settings }.fit(flags.on_invalid())
+    Loaded { model, files, scene: Some((description, appearance)), settings }.fit(flags.on_invalid())
 }
 
 /// Loads a patch file; `-` is standard input.
@@ -69,7 +70,7 @@ pub fn patches(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
     let files = vec![LoadedFile { name, surfaces: 0..file.model.surfaces.len(), splines: file.splines }];
     files.iter().for_each(LoadedFile::name_trims);
     let settings = Settings::of_flags(flags);
-    Loaded { model: file.model, files, description: None, settings }.fit(flags.on_invalid())
+    Loaded { model: file.model, files, scene: None, settings }.fit(flags.on_invalid())
 }
 
 fn name_skipped(skipped: &[Skipped]) {
@@ -126,6 +127,9 @@ impl Loaded {
         // From the last, so that the indices of those before stay.
         for &index in left_out.iter().rev() {
             let removed = self.model.surfaces.remove(index);
+            if let Some((_, appearance)) = &mut self.scene {
+                appearance.surfaces.remove(index);
+            }
             for file in &mut self.files {
                 if removed.knots.is_some() && file.surfaces.contains(&index) {
                     file.splines.retain(|spline| spline.surface != removed.number);

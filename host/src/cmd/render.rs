@@ -11,11 +11,12 @@ use super::{Failure, StatsOutputs, check_outputs, pool, progress, say, say_gave_
 use crate::output::Output;
 use crate::picture::{GAVE_UP, Picture, Rgb, encode};
 use crate::scanline::{Lanes, Outcome, Tally, Tracer};
+use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
-use crate::scene::file::Description;
 use crate::scene::rays::RayLine;
+use crate::scene::sampling::Sampling;
 use crate::settings::{Flags, SizeFlag};
-use crate::shade::Shader;
+use crate::shade::painter::{Colour, Painter};
 use crate::stats::Stats;
 
 /// The command line of `render`.
@@ -26,6 +27,9 @@ pub struct RenderArgs {
     /// The size of the picture.
     #[command(flatten)]
     pub size: SizeFlag,
+    /// The samples of a pixel: one, or four, uniform or jittered [default: one]
+    #[arg(long, value_enum, help_heading = "Output")]
+    pub samples: Option<Sampling>,
     /// The common flags.
     #[command(flatten)]
     pub flags: Flags,
@@ -36,7 +40,7 @@ pub struct RenderArgs {
 /// # Errors
 /// Bad input, too little memory, or an output that cannot be written; no output is left behind then.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let RenderArgs { scene, size, flags } = args;
+    let RenderArgs { scene, size, samples, flags } = args;
     let Some(output) = &flags.output else {
         return Err(Failure::Usage {
             message: "the picture has no name".to_owned(),
@@ -45,7 +49,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     };
     check_outputs(Some(output), &[scene], flags)?;
     let loaded = load::scene(scene, flags)?;
-    let Some(description) = &loaded.description else {
+    let Some((description, appearance)) = &loaded.scene else {
         return Err(Failure::Internal("a scene without a description".to_owned()));
     };
     let mut png = Output::create(output)?;
@@ -55,15 +59,16 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let tracer = prepared.tracer(settings);
 
     let size = size.size.unwrap_or(description.image.size);
-    let view = description.camera.view(size);
+    let view = description.camera.view(size).sampled(samples.unwrap_or(description.image.samples));
     let bar = progress(u64::from(size[1]), "rendering", flags.quiet);
-    let drawn = pool(settings.threads)?.install(|| draw(tracer.as_ref(), &view, description, &bar));
+    let drawn = pool(settings.threads)?.install(|| draw(tracer.as_ref(), &view, appearance, &bar));
     bar.finish_and_clear();
-    refuse_pixels(&drawn, scene, &loaded)?;
+    refuse_pixels(&drawn, &view, scene, &loaded)?;
 
     let (scene, lane) = (scene.display().to_string(), tracer.lane_bytes());
     let mut stats = Stats::new(scene, settings, &prepared, prepare_seconds, lane, &drawn.tally);
     stats.size = Some(size);
+    stats.samples = Some(view.sampling);
     drawn.picture.write_png(&mut png).map_err(|reason| png.failed(reason))?;
     png.finish()?;
     stats_outputs.finish(&stats)?;
@@ -79,48 +84,46 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
 pub struct Drawn {
     /// The picture.
     pub picture: Picture,
-    /// What became of each pixel's ray, row by row from the top.
+    /// What became of each sample's ray, scan line by scan line from the top.
     pub outcomes: Vec<Outcome>,
     /// The sums.
     pub tally: Tally,
 }
 
-/// The rays of a row of pixels, a scan line.
-pub fn row(view: &View, py: u32) -> Vec<RayLine> {
-    let ray = |px| RayLine {
+/// The rays of scan line `line`: of a row of pixels where each has one sample, else of half of it.
+pub fn row(view: &View, line: u32) -> Vec<RayLine> {
+    let ray = |sample| RayLine {
         origin: view.eye,
-        direction: view.direction(px, py),
+        direction: view.towards(sample),
         t_min: 0.0,
         t_max: f64::INFINITY,
-        scan_line: u64::from(py),
+        scan_line: u64::from(line),
         valid: true,
     };
-    (0..view.size[0]).map(ray).collect()
+    view.scan_line(line).samples.into_iter().map(ray).collect()
 }
 
-/// Draws a view, a scan line a job, on rayon's current threads. The result does not depend on their number.
-pub fn draw(tracer: &dyn Tracer, view: &View, description: &Description, bar: &ProgressBar) -> Drawn {
-    let Description { light, material, background, .. } = description;
-    let shader = Shader::new(view.eye, light, material);
-    let background = encode(*background);
+/// Draws a view, a row of pixels a job, on rayon's current threads. The result does not depend on their number.
+pub fn draw(tracer: &dyn Tracer, view: &View, appearance: &Appearance, bar: &ProgressBar) -> Drawn {
+    let painter = Painter::new(view.eye, appearance);
     let lanes = Lanes::new(tracer);
+    let side = view.sampling.side();
     let rows: Vec<(Vec<Rgb>, Vec<Outcome>, Tally)> = (0..view.size[1])
         .into_par_iter()
         .map(|py| {
-            let rays = row(view, py);
-            let (mut outcomes, mut tally) = (Vec::with_capacity(rays.len()), Tally::default());
-            lanes.with(|lane| lane.trace(&rays, false, &mut outcomes, &mut tally));
-            let pixels = rays.iter().zip(&outcomes).map(|(ray, outcome)| match outcome {
-                Outcome::Hit(found) => {
-                    let point = [0, 1, 2].map(|k| ray.origin[k] + found.t * ray.direction[k]);
-                    encode(shader.colour(point, found.normal))
+            let (mut all, mut tally) = (Vec::new(), Tally::default());
+            let mut lines = Vec::new();
+            lanes.with(|lane| {
+                for line in side * py..side * (py + 1) {
+                    let rays = row(view, line);
+                    let mut outcomes = Vec::with_capacity(rays.len());
+                    lane.trace(&rays, false, &mut outcomes, &mut tally);
+                    lines.push(painter.paint(lane, &rays, &outcomes));
+                    all.extend(outcomes);
                 }
-                Outcome::Miss => background,
-                Outcome::GaveUp { .. } | Outcome::Refused(_) | Outcome::Invalid => GAVE_UP,
             });
-            let pixels = pixels.collect();
             bar.inc(1);
-            (pixels, outcomes, tally)
+            (pixels(&lines), all, tally)
         })
         .collect();
     let mut drawn = Drawn { picture: Picture::new(view.size), outcomes: Vec::new(), tally: Tally::default() };
@@ -132,23 +135,40 @@ pub fn draw(tracer: &dyn Tracer, view: &View, description: &Description, bar: &P
     drawn
 }
 
+/// The pixels of a row, from the colours of its samples in one or two scan lines: their mean, in linear colour. A pixel with
+/// a ray that was given up shows that.
+fn pixels(lines: &[Vec<Colour>]) -> Vec<Rgb> {
+    let side = lines.len();
+    let samples = (side * side) as f64;
+    let width = lines.first().map_or(0, Vec::len) / side.max(1);
+    let pixel = |px: usize| {
+        let samples_of = lines.iter().flat_map(|line| &line[side * px..side * (px + 1)]);
+        let sum = samples_of
+            .copied()
+            .try_fold([0.0; 3], |sum, colour| colour.map(|colour: [f64; 3]| [0, 1, 2].map(|k| sum[k] + colour[k])));
+        sum.map_or(GAVE_UP, |sum| encode(sum.map(|part| part / samples)))
+    };
+    (0..width).map(pixel).collect()
+}
+
 /// Refuses a view with a pixel whose ray the kernel refuses.
-fn refuse_pixels(drawn: &Drawn, scene: &Path, loaded: &Loaded) -> Result<(), Failure> {
-    let refused = drawn.outcomes.iter().enumerate().find_map(|(pixel, outcome)| match outcome {
-        Outcome::Refused(error) => Some((pixel, error)),
+fn refuse_pixels(drawn: &Drawn, view: &View, scene: &Path, loaded: &Loaded) -> Result<(), Failure> {
+    let refused = drawn.outcomes.iter().enumerate().find_map(|(sample, outcome)| match outcome {
+        Outcome::Refused(error) => Some((sample, error)),
         _ => None,
     });
-    let Some((pixel, error)) = refused else {
+    let Some((sample, error)) = refused else {
         return Ok(());
     };
-    let width = drawn.picture.size()[0] as usize;
+    let side = view.sampling.side() as usize;
+    let width = side * drawn.picture.size()[0] as usize;
     let precision = loaded.settings.precision;
     Err(Failure::Refused {
         file: scene.display().to_string(),
         reason: format!(
             "the camera's ray of pixel ({}, {}) cannot be traced in {precision:?}: {error}",
-            pixel % width,
-            pixel / width
+            sample % width / side,
+            sample / width / side
         ),
         help: "bring the camera's vectors to the size of the surfaces, or use --precision f64".to_owned(),
     })

@@ -1,9 +1,11 @@
-//! What a picture looks like: its size, the light, the material, the background.
+//! What a picture looks like: its size and samples, lights, materials, the background.
 use serde::Deserialize;
 use toml::Spanned;
 
 use super::check::Check;
 use super::error::InputError;
+use super::polygon::Polygon;
+use super::sampling::Sampling;
 
 /// The most pixels along a side of an image. More would let a slip of the pen ask for terabytes.
 pub const MAX_SIDE: u32 = 32_768;
@@ -13,15 +15,17 @@ pub const MAX_SIDE: u32 = 32_768;
 pub struct Image {
     /// Width and height in pixels, each from 1 to [`MAX_SIDE`]. By default 512 × 512.
     pub size: [u32; 2],
+    /// How many samples a pixel has, and where. By default one.
+    pub samples: Sampling,
 }
 
 impl Default for Image {
     fn default() -> Self {
-        Self { size: [512, 512] }
+        Self { size: [512, 512], samples: Sampling::default() }
     }
 }
 
-/// The table `[light]`: the one light, a point.
+/// The table `[light]`, or one of `[[lights]]`: a point that shines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// Where it is, in the units of the surfaces. By default at the camera's eye: `None`.
@@ -36,7 +40,7 @@ impl Default for Light {
     }
 }
 
-/// The table `[material]`: how all surfaces return the light.
+/// The table `[material]`, or one of `[materials]`: how surfaces and polygons return the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Red, green and blue, linear, 0 to 1. By default a light grey.
@@ -49,12 +53,29 @@ pub struct Material {
     pub highlight: f64,
     /// The exponent of the highlight, above 0: the larger, the smaller the spot. By default 40.
     pub shininess: f64,
+    /// The share of what is seen that is a mirror's picture, 0 to 1; the rest is the other fields'. By default 0.
+    pub reflect: f64,
 }
 
 impl Default for Material {
     fn default() -> Self {
-        Self { colour: [0.8; 3], ambient: 0.15, diffuse: 0.7, highlight: 0.3, shininess: 40.0 }
+        Self { colour: [0.8; 3], ambient: 0.15, diffuse: 0.7, highlight: 0.3, shininess: 40.0, reflect: 0.0 }
     }
+}
+
+/// All that a picture needs beside what rays meet on surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Appearance {
+    /// The lights.
+    pub lights: Vec<Light>,
+    /// The materials, the first of which is that of the scene itself.
+    pub materials: Vec<Material>,
+    /// For each surface, by its index in the model, the index of its material. A surface without an entry has the first.
+    pub surfaces: Vec<usize>,
+    /// The polygons, each with the index of its material.
+    pub polygons: Vec<(Polygon, usize)>,
+    /// The colour where there is nothing: red, green and blue, linear, 0 to 1.
+    pub background: [f64; 3],
 }
 
 /// The background where a scene file gives none: white.
@@ -64,16 +85,18 @@ pub(super) const BACKGROUND: [f64; 3] = [1.0; 3];
 #[serde(deny_unknown_fields)]
 pub(super) struct ImageTable {
     size: Option<Spanned<Vec<u32>>>,
+    samples: Option<Sampling>,
 }
 
 impl ImageTable {
     pub(super) fn check(&self, check: &Check) -> Result<Image, InputError> {
+        let samples = self.samples.unwrap_or_default();
         let Some(size) = &self.size else {
-            return Ok(Image::default());
+            return Ok(Image { samples, ..Image::default() });
         };
         match size.get_ref()[..] {
             [width, height] if [width, height].iter().all(|side| (1..=MAX_SIDE).contains(side)) => {
-                Ok(Image { size: [width, height] })
+                Ok(Image { size: [width, height], samples })
             }
             _ => Err(check.source.refuse(
                 size.span(),
@@ -113,6 +136,7 @@ pub(super) struct MaterialTable {
     diffuse: Option<Spanned<f64>>,
     highlight: Option<Spanned<f64>>,
     shininess: Option<Spanned<f64>>,
+    reflect: Option<Spanned<f64>>,
 }
 
 impl MaterialTable {
@@ -132,6 +156,9 @@ impl MaterialTable {
         }
         if let Some(shininess) = &self.shininess {
             material.shininess = check.positive("`shininess`", shininess)?;
+        }
+        if let Some(reflect) = &self.reflect {
+            material.reflect = check.part("`reflect`", reflect)?;
         }
         Ok(material)
     }

@@ -46,6 +46,16 @@ impl Check<'_> {
         ))
     }
 
+    /// A finite number.
+    pub(super) fn finite(&self, what: &str, number: &Spanned<f64>) -> Result<f64, InputError> {
+        let value = *number.get_ref();
+        if value.is_finite() {
+            return Ok(value);
+        }
+        let help = "write a finite number";
+        Err(self.source.refuse(number.span(), format!("{what} is {value}"), "not finite", help))
+    }
+
     /// A finite number of at least 0.
     pub(super) fn amount(&self, what: &str, number: &Spanned<f64>) -> Result<f64, InputError> {
         let value = *number.get_ref();
@@ -63,6 +73,16 @@ impl Check<'_> {
             return Ok(value);
         }
         let help = "write a finite number above 0";
+        Err(self.source.refuse(number.span(), format!("{what} is {value}"), "out of range", help))
+    }
+
+    /// A number from 0 to 1.
+    pub(super) fn part(&self, what: &str, number: &Spanned<f64>) -> Result<f64, InputError> {
+        let value = *number.get_ref();
+        if (0.0..=1.0).contains(&value) {
+            return Ok(value);
+        }
+        let help = "write a number from 0 to 1";
         Err(self.source.refuse(number.span(), format!("{what} is {value}"), "out of range", help))
     }
 

@@ -1,66 +1,37 @@
 //! Scene files: TOML that names surfaces and says how to look at them.
 //!
-//! Only `surfaces` and `[camera]` are needed; the fields and their defaults are those of [`Description`] and its parts.
-//! Files of surfaces, in any format of [`patches`], are taken from the folder of the scene file.
+//! Every field is described in `fixtures/scenes/README.md`, with an example that uses them all. The least that there can be:
 //!
 //! ```
 //! use patchray_host::scene::file;
 //! let text = r#"
-//!     surfaces = [{ file = "../patches/teapot.bpt" }]
-//!     background = [0.9, 0.9, 1]
+//!     surfaces = [{ torus = { major = 2, minor = 0.5 }, transform = [{ translate = [0, 0, 1] }] }]
 //!
-//!     [image]
-//!     size = [640, 480]
-//!
-//!     [camera] # or by vectors: eye, forward, right, up
+//!     [camera]
 //!     eye = [8, -9, 7]
 //!     look_at = [0, 0, 1.5]
-//!     up = [0, 0, 1]
-//!     fov = 35
-//!
-//!     [light]
-//!     position = [5, -10, 15]
-//!     colour = [1, 1, 0.9]
-//!
-//!     [material]
-//!     colour = [0.8, 0.5, 0.3]
-//!     ambient = 0.1
-//!     diffuse = 0.7
-//!     highlight = 0.4
-//!     shininess = 60
-//!
-//!     [trace]
-//!     method = "clipping-coherent"
-//!     precision = "f64"
-//!     acceptance = "paper"
-//!     newton_iterations = 12
-//!     newton_starts = 3
-//!     clip_threshold = 0.2
-//!     flatness = 0.0005
-//!     grid_density = 4.0
-//!     threads = 2
-//!
-//!     [trace.limits]
-//!     voxels = 10000
 //! "#;
 //! let description = file::parse("scene.toml", text)?;
-//! assert_eq!(description.image.size, [640, 480]);
-//! assert_eq!(description.trace.limits[0].value, 10_000);
+//! assert_eq!(description.image.size, [512, 512]);
 //! # Ok::<(), patchray_host::scene::error::InputError>(())
 //! ```
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::appearance::{BACKGROUND, Image, ImageTable, Light, LightTable, Material, MaterialTable};
+use super::appearance::{Appearance, BACKGROUND, Image, ImageTable, Light, LightTable, Material, MaterialTable};
+use super::assemble::{Assembled, assemble};
 use super::camera::{Camera, CameraTable};
 use super::check::Check;
+use super::contents::{self, Contents, EntryTable, GroupTable, Names};
 use super::error::{InputError, OnInvalid, Skipped};
 use super::model::Model;
 use super::nearest::did_you_mean;
 use super::patches::{self, PatchFile};
+use super::polygon::PolygonTable;
 use super::source::SourceText;
 use super::spline::SplineSummary;
 use super::trace::{TraceSettings, TraceTable};
@@ -72,25 +43,20 @@ pub struct Description {
     pub image: Image,
     /// The table `[camera]`.
     pub camera: Camera,
-    /// The table `[light]`.
-    pub light: Light,
-    /// The table `[material]`.
+    /// The table `[light]`, or the tables `[[lights]]`. By default one light.
+    pub lights: Vec<Light>,
+    /// The table `[material]`: of everything that names no other.
     pub material: Material,
-    /// The colour where no surface is: red, green and blue, linear, 0 to 1. By default white.
+    /// The tables of `[materials]`, sorted by name.
+    pub materials: Vec<Material>,
+    /// The colour where there is nothing: red, green and blue, linear, 0 to 1. By default white.
     pub background: [f64; 3],
-    /// The list `surfaces`, at least one.
-    pub surfaces: Vec<SurfaceSource>,
+    /// The lists `surfaces`, at least one, and `polygons`.
+    pub contents: Contents,
+    /// The tables of `[groups]`, sorted by name.
+    pub groups: Vec<Contents>,
     /// The table `[trace]`.
     pub trace: TraceSettings,
-}
-
-/// An entry of `surfaces`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SurfaceSource {
-    /// The patch file as written, taken from the folder of the scene file.
-    pub file: PathBuf,
-    /// The bytes of the scene file that name it.
-    pub span: Range<usize>,
 }
 
 /// A scene file with the surfaces that it names.
@@ -100,13 +66,15 @@ pub struct Scene {
     pub source: SourceText,
     /// What it says.
     pub description: Description,
-    /// The surfaces of all its files one after another, each with its number in its own file.
+    /// The surfaces of all its entries one after another, in their places, each with its number in its own file or shape.
     pub model: Model,
-    /// The files, in order.
+    /// Where they come from, in order.
     pub files: Vec<SceneFile>,
+    /// What they look like, and the polygons.
+    pub appearance: Appearance,
 }
 
-/// A patch file of a scene.
+/// A patch file of a scene, as often as the scene uses it. For a generated shape it is the scene file itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFile {
     /// Its path, from the current folder.
@@ -115,12 +83,12 @@ pub struct SceneFile {
     pub surfaces: Range<usize>,
     /// The B-splines whose pieces are among them.
     pub splines: Vec<SplineSummary>,
-    /// Its surfaces that were left out; empty unless the reader was told to skip.
+    /// Its surfaces that were left out, at its first use; empty unless the reader was told to skip.
     pub skipped: Vec<Skipped>,
 }
 
 impl Scene {
-    /// The file that holds the surface with this index in the model.
+    /// Where the surface with this index in the model comes from.
     pub fn file_of(&self, index: usize) -> Option<&SceneFile> {
         self.files.iter().find(|file| file.surfaces.contains(&index))
     }
@@ -142,26 +110,21 @@ pub fn read(path: &Path, on_invalid: OnInvalid) -> Result<Scene, InputError> {
 /// The scene that `source` describes, with patch files fetched by `fetch`, which gives their path too.
 pub(super) fn load(
     source: SourceText,
-    mut fetch: impl FnMut(&Path) -> Result<(PathBuf, PatchFile), InputError>,
+    fetch: impl FnMut(&Path) -> Result<(PathBuf, PatchFile), InputError>,
 ) -> Result<Scene, InputError> {
     let description = describe(&source)?;
-    let (mut model, mut files) = (Model::default(), Vec::new());
-    for surfaces in &description.surfaces {
-        let (path, mut file) = fetch(&surfaces.file).map_err(|error| match error {
-            InputError::Unreadable { .. } => source.refuse(
-                surfaces.span.clone(),
-                error.to_string(),
-                "this file",
-                "check the path; it is taken from the folder of the scene file",
-            ),
-            refused => refused,
-        })?;
-        let first = model.surfaces.len();
-        model.surfaces.append(&mut file.model.surfaces);
-        let surfaces = first..model.surfaces.len();
-        files.push(SceneFile { path, surfaces, splines: file.splines, skipped: file.skipped });
-    }
-    Ok(Scene { source, description, model, files })
+    let Description { contents, groups, lights, material, materials, background, .. } = &description;
+    let Assembled { model, files, materials: of_surfaces, polygons } = assemble(&source, contents, groups, fetch)?;
+    // The scene's own material comes first.
+    let index = |named: Option<usize>| named.map_or(0, |named| named + 1);
+    let appearance = Appearance {
+        lights: lights.clone(),
+        materials: [material].into_iter().chain(materials).copied().collect(),
+        surfaces: of_surfaces.into_iter().map(index).collect(),
+        polygons: polygons.into_iter().map(|(polygon, named)| (polygon, index(named))).collect(),
+        background: *background,
+    };
+    Ok(Scene { source, description, model, files, appearance })
 }
 
 /// Reads `text`, a whole scene file, without the files that it names; `name` stands for its path in errors.
@@ -178,16 +141,17 @@ struct DescriptionTable {
     image: Option<ImageTable>,
     camera: Option<Spanned<CameraTable>>,
     light: Option<LightTable>,
+    lights: Option<Spanned<Vec<LightTable>>>,
     material: Option<MaterialTable>,
+    #[serde(default)]
+    materials: BTreeMap<Spanned<String>, MaterialTable>,
     background: Option<Spanned<Vec<f64>>>,
-    surfaces: Option<Spanned<Vec<SurfaceTable>>>,
+    surfaces: Option<Vec<Spanned<EntryTable>>>,
+    #[serde(default)]
+    polygons: Vec<PolygonTable>,
+    #[serde(default)]
+    groups: BTreeMap<Spanned<String>, GroupTable>,
     trace: Option<TraceTable>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SurfaceTable {
-    file: Spanned<String>,
 }
 
 fn describe(source: &SourceText) -> Result<Description, InputError> {
@@ -196,7 +160,7 @@ fn describe(source: &SourceText) -> Result<Description, InputError> {
     let missing =
         |what: &str, help: &str| source.refuse(0..0, format!("the scene has no {what}"), "in this file", help);
     let surfaces = match table.surfaces {
-        Some(list) if !list.get_ref().is_empty() => list.into_inner(),
+        Some(list) if !list.is_empty() => list,
         _ => {
             let help = "name the patch files at the top: `surfaces = [{ file = \"teapot.bpt\" }]`";
             return Err(missing("surfaces", help));
@@ -206,18 +170,40 @@ fn describe(source: &SourceText) -> Result<Description, InputError> {
         let help = "add a table `[camera]` with `eye` and `look_at`, or with `eye`, `forward`, `right` and `up`";
         return Err(missing("camera", help));
     };
+    let names = Names {
+        materials: table.materials.keys().map(|name| name.get_ref().as_str()).collect(),
+        groups: table.groups.keys().map(|name| name.get_ref().as_str()).collect(),
+    };
     Ok(Description {
         image: table.image.map_or(Ok(Image::default()), |image| image.check(&check))?,
         camera: CameraTable::check(camera, &check)?,
-        light: table.light.map_or(Ok(Light::default()), |light| light.check(&check))?,
+        lights: lights(table.light, table.lights, &check)?,
         material: table.material.map_or(Ok(Material::default()), |material| material.check(&check))?,
+        materials: table.materials.values().map(|material| material.check(&check)).collect::<Result<_, _>>()?,
         background: table.background.map_or(Ok(BACKGROUND), |colour| check.colour("`background`", &colour))?,
-        surfaces: surfaces
-            .into_iter()
-            .map(|entry| SurfaceSource { span: entry.file.span(), file: entry.file.into_inner().into() })
-            .collect(),
+        contents: Contents::check(&surfaces, &table.polygons, &names, &check)?,
+        groups: contents::groups(&table.groups, &names, &check)?,
         trace: table.trace.map_or(Ok(TraceSettings::default()), |trace| trace.check(&check))?,
     })
+}
+
+/// The lights: one, or a list, which may be empty.
+fn lights(
+    one: Option<LightTable>,
+    list: Option<Spanned<Vec<LightTable>>>,
+    check: &Check,
+) -> Result<Vec<Light>, InputError> {
+    match (one, list) {
+        (None, None) => Ok(vec![Light::default()]),
+        (Some(light), None) => Ok(vec![light.check(check)?]),
+        (None, Some(list)) => list.get_ref().iter().map(|light| light.check(check)).collect(),
+        (Some(_), Some(list)) => Err(check.source.refuse(
+            list.span(),
+            "there are both `light` and `lights`",
+            "one or the other",
+            "write a table `[[lights]]` for each light",
+        )),
+    }
 }
 
 /// The refusal for what the TOML reader did not accept.

@@ -1,19 +1,25 @@
 //! From files to data: patch files, ray files and scene files.
 pub mod appearance;
+mod assemble;
 pub mod bpt;
 pub mod camera;
 mod check;
+pub mod contents;
 pub mod error;
 pub mod file;
+pub mod generator;
 mod json;
 pub mod model;
 pub mod nearest;
 pub mod nurbs_python;
 pub mod patches;
+pub mod polygon;
 pub mod rays;
+pub mod revolution;
 pub mod sampling;
 pub mod shapes;
 pub mod source;
 pub mod spline;
 pub mod teapot;
 pub mod trace;
+pub mod transform;

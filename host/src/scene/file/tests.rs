@@ -2,8 +2,11 @@ use std::fs;
 
 use proptest::prelude::*;
 
+use super::super::contents::What;
 use super::super::error::tests::{assert_refused, rendered};
 use super::*;
+
+mod contents;
 
 const LEAST: &str = "surfaces = [{ file = \"a.bpt\" }]\n[camera]\neye = [0, -5, 0]\nlook_at = [0, 0, 0]\n";
 
@@ -24,12 +27,12 @@ fn camera_refused(lines: &str, place: &str, message: &str) {
 #[test]
 fn everything_else_has_a_default() {
     let scene = parse("s.toml", LEAST).expect("valid");
-    assert_eq!((scene.image, scene.light), (Image::default(), Light::default()));
+    assert_eq!((scene.image, &scene.lights[..]), (Image::default(), &[Light::default()][..]));
     assert_eq!((scene.material, scene.background), (Material::default(), [1.0; 3]));
     assert_eq!(scene.trace, TraceSettings::default());
     let up = [0.0, 0.0, 1.0];
     assert_eq!(scene.camera, Camera::LookAt { eye: [0.0, -5.0, 0.0], look_at: [0.0; 3], up, fov: 40.0 });
-    assert_eq!(scene.surfaces[0].file, Path::new("a.bpt"));
+    assert_eq!(scene.contents.surfaces[0].what, What::File("a.bpt".into()));
 }
 
 #[test]
@@ -37,7 +40,8 @@ fn surfaces_and_camera_are_needed() {
     refused("", "s.toml:1:1", "the scene has no surfaces");
     refused("surfaces = []\n[camera]\n", "s.toml:1:1", "the scene has no surfaces");
     refused("surfaces = [{ file = \"a.bpt\" }]\n", "s.toml:1:1", "the scene has no camera");
-    refused("surfaces = [{}]\n", "s.toml:1:13", "missing field `file`");
+    let camera = "[camera]\neye = [0, -5, 0]\nlook_at = [0, 0, 0]\n";
+    refused(&format!("surfaces = [{{}}]\n{camera}"), "s.toml:1:13", "this entry of `surfaces` names none");
 }
 
 #[test]
