@@ -1,0 +1,83 @@
+//! The paper's four scenes: what `fixtures/scenes` holds of them, and how near it comes to the figures of its Table 1.
+
+use indicatif::ProgressBar;
+use patchray_host::cmd::render::draw;
+use patchray_host::lower::Stages;
+use patchray_host::prepared::Prepared;
+use patchray_host::scene::error::OnInvalid;
+use patchray_host::scene::file::{self, Scene};
+use patchray_host::scene::trace::{Method, Precision};
+use patchray_host::settings::{Flags, Settings};
+use std::path::Path;
+
+/// A scene of the paper: its file's name, and its row of Table 1 as far as it is about the original algorithm.
+struct Row {
+    name: &'static str,
+    surfaces: u64,
+    patches: u64,
+    intersection_points: u64,
+}
+
+const TABLE_1: [Row; 4] = [
+    Row { name: "teapot", surfaces: 32, patches: 7_594, intersection_points: 110_169 },
+    Row { name: "toruses", surfaces: 40, patches: 13_872, intersection_points: 583_972 },
+    Row { name: "rings", surfaces: 288, patches: 39_042, intersection_points: 207_517 },
+    Row { name: "mirrors", surfaces: 340, patches: 39_358, intersection_points: 470_133 },
+];
+
+fn scene(name: &str) -> Scene {
+    let path = format!("{}/../fixtures/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    file::read(Path::new(&path), OnInvalid::Refuse).expect("it is valid")
+}
+
+/// The scene ready for the original numerical method, at its own flatness.
+fn prepared(scene: &Scene) -> (Prepared, Settings) {
+    let flags = Flags { method: Some(Method::Newton), precision: Some(Precision::F64), ..Flags::default() };
+    let settings = Settings::of_scene(&flags, &scene.description.trace, &scene.source).expect("it is valid");
+    (Prepared::build(&scene.model, Stages::of(Method::Newton), &settings).expect("there is memory"), settings)
+}
+
+/// Asserts that a figure is the paper's to 10 %.
+fn assert_near(what: &str, found: u64, paper: u64) {
+    assert!(found.abs_diff(paper) * 10 <= paper, "{what}: {found}, in the paper {paper}");
+}
+
+#[test]
+fn surfaces_and_patches_are_the_papers() {
+    for Row { name, surfaces, patches, .. } in TABLE_1 {
+        let scene = scene(name);
+        assert_eq!(scene.model.surfaces.len() as u64, surfaces, "{name}");
+        // The tables' scenes are polynomial, and bicubic throughout.
+        let bicubic = scene.model.surfaces.iter().all(|s| !s.rational && (s.degree_u, s.degree_v) == (3, 3));
+        assert!(bicubic, "{name}");
+        assert_near(name, prepared(&scene).0.patches(), patches);
+    }
+}
+
+#[test]
+fn intersection_points_are_the_papers() {
+    for Row { name, intersection_points, .. } in TABLE_1 {
+        let scene = scene(name);
+        let (prepared, settings) = prepared(&scene);
+        let view = scene.description.camera.view([512, 512]);
+        let drawn = draw(prepared.tracer(&settings).as_ref(), &view, &scene.appearance, &ProgressBar::hidden());
+        assert_eq!((drawn.tally.rays, drawn.tally.gave_up_in_all()), (512 * 512, 0), "{name}");
+        assert_near(name, drawn.tally.count("intersection_points"), intersection_points);
+    }
+}
+
+/// Neighbours have the same control points along the edge that they share, to the bit, wherever they are put.
+#[test]
+fn no_torus_or_ring_has_a_crack() {
+    for (name, each) in [("toruses", 8), ("rings", 12)] {
+        let scene = scene(name);
+        for torus in scene.model.surfaces.chunks(each) {
+            // In a closed net of bicubics there are 9 points for each surface.
+            let mut points: Vec<_> =
+                torus.iter().flat_map(|s| &s.points).map(|point| point.map(f64::to_bits)).collect();
+            points.sort_unstable();
+            points.dedup();
+            assert_eq!(points.len(), 9 * each, "{name}");
+        }
+    }
+}
