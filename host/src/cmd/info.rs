@@ -3,11 +3,11 @@
 //! With `--json` it prints an object with these fields: `schema` (1), `version` (the kernel's), `file`, `surfaces`,
 //! `rational_surfaces`, `control_points`, `degrees` (a list of `u`, `v`, `surfaces`), in all of which a B-spline counts with
 //! the Bézier surfaces that it was cut into; `b_splines`, a list of them with `file` and the fields of [`SplineSummary`];
-//! `control_box` (`min`, `max`; `null` without surfaces), `diagonal`, `flatness` and `grid_density` (the ones in effect),
-//! and `memory`: for each precision `patches` and `preparation_scratch_bytes` (while the scene is built), and under
-//! `methods` for each method `arena_bytes` (lent for the scene), `arena_bytes_by_kind`, `coherence_bytes_per_thread`,
-//! `scratch_bytes_per_thread`. A precision that cannot hold the model has `refused`, the reason, instead. All bytes are sizes
-//! of slots times their number.
+//! `polygons`, the number of a scene's; `control_box` (`min`, `max`; `null` without surfaces), `diagonal`, `flatness` and
+//! `grid_density` (the ones in effect), and `memory`: for each precision `patches` and `preparation_scratch_bytes` (while the
+//! scene is built), and under `methods` for each method `arena_bytes` (lent for the scene), `arena_bytes_by_kind`,
+//! `coherence_bytes_per_thread`, `scratch_bytes_per_thread`. A precision that cannot hold the model has `refused`, the
+//! reason, instead. All bytes are sizes of slots times their number.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -52,6 +52,7 @@ pub struct Info {
     control_points: usize,
     degrees: Vec<Degrees>,
     b_splines: Vec<SplineOfFile>,
+    polygons: usize,
     control_box: Option<Corners>,
     diagonal: f64,
     flatness: f64,
@@ -109,8 +110,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let output = flags.output.as_deref().unwrap_or(Path::new("-"));
     // What is printed is one thing, in one form or the other.
     check_outputs(Some(output), &[file], &Flags { json: false, ..flags.clone() })?;
-    let is_scene = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-    let loaded = if is_scene { load::scene(file, flags)? } else { load::patches(file, flags)? };
+    let loaded = load::scene_or_patches(file, flags)?;
     let mut out = Output::create(output)?;
     let info = Info::of(file, &loaded)?;
     let text = if flags.json { to_json(&info) } else { info.to_text() };
@@ -147,6 +147,7 @@ impl Info {
             control_points: model.surfaces.iter().map(|surface| surface.points.len()).sum(),
             degrees: degrees.into_iter().map(|((u, v), surfaces)| Degrees { u, v, surfaces }).collect(),
             b_splines: splines.collect(),
+            polygons: loaded.scene.as_ref().map_or(0, |(_, appearance)| appearance.polygons.len()),
             control_box: control_box.map(|bounds| Corners { min: bounds.min, max: bounds.max }),
             diagonal: control_box.map_or(0.0, |bounds| bounds.diagonal()),
             flatness: settings.flatness,
@@ -202,6 +203,9 @@ impl Info {
         }
         if splines > LISTED {
             line(format_args!("  and {} more, which --json lists", splines - LISTED));
+        }
+        if self.polygons > 0 {
+            line(format_args!("polygons        {}", self.polygons));
         }
         if let Some(Corners { min, max }) = &self.control_box {
             line(format_args!("control box     {min:?} to {max:?}, diagonal {}", self.diagonal));

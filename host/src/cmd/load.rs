@@ -39,6 +39,15 @@ pub struct LoadedFile {
     pub splines: Vec<SplineSummary>,
 }
 
+/// Loads a scene file, which `.toml` at the end of its name says it is, or else a patch file.
+///
+/// # Errors
+/// A file is refused.
+pub fn scene_or_patches(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
+    let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    if is_scene { scene(path, flags) } else { patches(path, flags) }
+}
+
 /// Loads a scene file and the patch files that it names.
 ///
 /// # Errors
@@ -149,6 +158,12 @@ impl Loaded {
     /// The number in its file of the surface with this index in the model.
     pub fn number_of(&self, index: usize) -> usize {
         self.model.surfaces.get(index).map_or(index, |surface| surface.number)
+    }
+
+    /// The number under which answers name the surface with this index in the model: its number in the patch file, or in a
+    /// scene, where two files may have the same ones, its number among all surfaces that are traced.
+    pub fn answered_number_of(&self, index: usize) -> usize {
+        if self.scene.is_some() { index } else { self.number_of(index) }
     }
 
     /// The parameters, as its file has them, of a point of the surface with this index in the model.

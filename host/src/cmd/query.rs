@@ -20,7 +20,7 @@ use crate::stats::{Asked, Stats};
 /// The command line of `query`.
 #[derive(Args, Clone, Debug)]
 pub struct QueryArgs {
-    /// The surfaces (.bpt, or NURBS-Python's .json)
+    /// The surfaces (.bpt, or NURBS-Python's .json), or a scene file (.toml)
     pub patches: PathBuf,
     /// The ray file (CSV)
     pub rays: PathBuf,
@@ -81,7 +81,7 @@ pub fn run(args: &QueryArgs) -> Result<(), Failure> {
     }
     let output = flags.output.as_deref().unwrap_or(Path::new("-"));
     check_outputs(Some(output), &[patches, rays], flags)?;
-    let loaded = load::patches(patches, flags)?;
+    let loaded = load::scene_or_patches(patches, flags)?;
     let settings = &loaded.settings;
     let reader = Rays::open(rays, flags.on_invalid())?;
     let mut out = Output::create(output)?;
@@ -205,7 +205,7 @@ fn answer<S: Number>(outcome: &Outcome, loaded: &Loaded, narrow: impl Fn(f64) ->
             t: narrow(found.t),
             u: narrow(u),
             v: narrow(v),
-            patch: loaded.number_of(found.surface),
+            patch: loaded.answered_number_of(found.surface),
             normal: found.normal.map(|normal| normal.map(&narrow)),
         }
     };

@@ -21,7 +21,7 @@ pub struct Found<S> {
     pub u: S,
     /// The parameter of the surface in v, 0 to 1.
     pub v: S,
-    /// The number of the surface in its file, from 0.
+    /// The number of the surface in its patch file, or in the scene, from 0.
     pub patch: usize,
     /// The normal there; `None`, which leaves its fields empty, where there is none, as on a collapsed edge.
     pub normal: Option<[S; 3]>,

@@ -12,6 +12,7 @@ use tempfile::TempDir;
 mod all_and_any;
 mod b_splines;
 mod bad_input;
+mod scenes;
 
 /// A folder with a teapot, a scene of it, and some rays.
 struct Folder(TempDir);

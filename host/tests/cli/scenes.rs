@@ -1,0 +1,78 @@
+//! Scenes of generated shapes, polygons and mirrors, and pictures of four samples per pixel.
+
+use super::*;
+
+/// Two toruses, the upper one in a group, over a mirror.
+const TORUSES: &str = "surfaces = [{ torus = { major = 1, minor = 0.3 } }, { group = 'raised' }]\n\
+    polygons = [{ vertices = [[-5, -5, -1], [5, -5, -1], [5, 5, -1], [-5, 5, -1]], material = 'mirror' }]\n\
+    [groups.raised]\nsurfaces = [{ torus = { major = 1, minor = 0.3 }, transform = [{ translate = [0, 0, 1] }] }]\n\
+    [materials.mirror]\nreflect = 0.7\n\
+    [image]\nsize = [40, 30]\nsamples = 'jittered'\n\
+    [camera]\neye = [0, -6, 4]\nlook_at = [0, 0, 0]\n";
+
+#[test]
+fn four_samples_give_the_same_bytes_with_any_threads() {
+    let folder = Folder::new();
+    folder.put("toruses.toml", TORUSES);
+    for method in METHODS {
+        for threads in [1, 2, 3] {
+            let flags = format!("--method {method} --threads {threads}");
+            folder.done(&format!("render toruses.toml -o {threads}.png --stats {threads}.json {flags}"));
+        }
+        let picture = |threads| fs::read(folder.path(&format!("{threads}.png"))).expect("there");
+        assert!(picture(1) == picture(2) && picture(1) == picture(3), "{method}");
+        let [one, three] = [folder.json("1.json"), folder.json("3.json")];
+        assert_eq!((&one["samples"], &one["rays"]), (&"jittered".into(), &4800.into()));
+        for count in ["hit_rays", "intersection_points", "newton_steps", "clip_steps"] {
+            assert_eq!(one[count], three[count], "{method} {count}");
+        }
+    }
+}
+
+#[test]
+fn the_flag_chooses_other_samples_than_the_scene() {
+    let folder = Folder::new();
+    folder.put("toruses.toml", TORUSES);
+    let pictures = ["one", "uniform", "jittered"].map(|samples| {
+        folder.done(&format!("render toruses.toml -o a.png --stats s.json --samples {samples}"));
+        let stats = folder.json("s.json");
+        let rays: u64 = if samples == "one" { 1200 } else { 4800 };
+        assert_eq!((&stats["samples"], &stats["rays"]), (&samples.into(), &rays.into()));
+        fs::read(folder.path("a.png")).expect("there")
+    });
+    assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2] && pictures[0] != pictures[2]);
+    folder.fails("render toruses.toml -o b.png --samples four", 2, &["uniform"]);
+}
+
+/// A mirror's rays are drawn, and counted neither as rays nor in what the method did.
+#[test]
+fn mirrors_and_polygons_are_seen_and_not_counted() {
+    let folder = Folder::new();
+    folder.put("toruses.toml", TORUSES);
+    folder.put("dull.toml", TORUSES.replace("0.7", "0"));
+    folder.put("bare.toml", TORUSES.replace("-5, -1]", "-5, -90]").replace("5, -1]", "5, -90]"));
+    let drawn = ["toruses", "dull", "bare"].map(|name| {
+        folder.done(&format!("render {name}.toml -o {name}.png --stats {name}.json"));
+        let stats = folder.json(&format!("{name}.json"));
+        let counts =
+            ["rays", "hit_rays", "surfaces", "intersection_points", "clip_steps"].map(|key| stats[key].clone());
+        (fs::read(folder.path(&format!("{name}.png"))).expect("there"), counts)
+    });
+    assert!(drawn[0].0 != drawn[1].0 && drawn[1].0 != drawn[2].0);
+    assert_eq!((&drawn[0].1, &drawn[1].1), (&drawn[2].1, &drawn[2].1));
+    let told = printed(&folder.done("info toruses.toml"));
+    assert!(told.contains("surfaces        32 (0 rational)") && told.contains("polygons        1"), "{told}");
+}
+
+#[test]
+fn the_surfaces_of_a_scene_answer_rays_under_their_number_in_it() {
+    let folder = Folder::new();
+    folder.put("toruses.toml", TORUSES);
+    // Down through the upper torus, between the two, and past both.
+    folder.put("rays.csv", "ox,oy,oz,dx,dy,dz\n0.7,0.7,9,0,0,-1\n0.7,0.7,0.5,0,0,-1\n0,0,9,0,0,-1\n");
+    let answers = printed(&folder.done("query toruses.toml rays.csv"));
+    let lines: Vec<_> = answers.lines().skip(1).map(fields).collect();
+    let patch = |line: &[&str]| line[5].parse::<usize>().expect("a number");
+    assert!((16..32).contains(&patch(&lines[0])) && patch(&lines[1]) < 16, "{answers}");
+    assert_eq!(lines[2][9], "miss");
+}
