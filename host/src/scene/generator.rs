@@ -68,10 +68,10 @@ impl Shape {
             }
             Self::Sphere { radius, around, arcs } => {
                 let half = Curve::circle(arcs, -90.0, 180.0, 2).map(|[x, y]| [radius * x, radius * y]);
-                revolve(&half.between_poles(), &circle(arcs, around))
+                revolve(&half, &circle(arcs, around))
             }
             Self::Cylinder { radius, height, arc: [from, sweep], around, arcs } => {
-                let line = Curve::segment(arcs, [radius, -0.5 * height], [radius, 0.5 * height]);
+                let line = Curve::segment(arcs.degree(), [radius, -0.5 * height], [radius, 0.5 * height]);
                 revolve(&line, &Curve::circle(arcs, from, sweep, around))
             }
         }

@@ -19,6 +19,16 @@ pub enum Arcs {
     Polynomial,
 }
 
+impl Arcs {
+    /// The degree of an arc.
+    pub fn degree(self) -> usize {
+        match self {
+            Arcs::Rational => 2,
+            Arcs::Polynomial => 3,
+        }
+    }
+}
+
 /// A plane curve of Bézier arcs: control points `[x, y, weight]`, those of neighbours shared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
@@ -33,17 +43,21 @@ impl Curve {
     /// `sweep`, both in degrees: 360 of them make it closed.
     pub fn circle(kind: Arcs, from: f64, sweep: f64, count: usize) -> Self {
         let closed = sweep == 360.0;
-        // The halves of arcs are counted, so that the middle control point of a rational arc has a number too.
-        let at = |half: usize| {
-            let half = if closed { half % (2 * count) } else { half };
-            cos_sin(from + sweep * half as f64 / (2 * count) as f64)
+        let at = |end: usize| {
+            let end = if closed { end % count } else { end };
+            cos_sin(from + sweep * end as f64 / count as f64)
         };
+        let [cos, _] = cos_sin(sweep / count as f64);
         let step = (sweep / count as f64).to_radians();
         let (weight, handle) = ((0.5 * step).cos(), 4.0 / 3.0 * (0.25 * step).tan());
         let arc = |number: usize| {
-            let [start, middle, end] = [0, 1, 2].map(|half| at(2 * number + half));
+            let [start, end] = [at(number), at(number + 1)];
             match kind {
-                Arcs::Rational => vec![[start[0], start[1], 1.0], [middle[0] / weight, middle[1] / weight, weight]],
+                // Where the tangents at the ends meet; exact for a quarter.
+                Arcs::Rational => {
+                    let [x, y] = [0, 1].map(|k| (start[k] + end[k]) / (1.0 + cos));
+                    vec![[start[0], start[1], 1.0], [x, y, weight]]
+                }
                 Arcs::Polynomial => vec![
                     [start[0], start[1], 1.0],
                     [start[0] - handle * start[1], start[1] + handle * start[0], 1.0],
@@ -52,20 +66,16 @@ impl Curve {
             }
         };
         let mut points: Vec<_> = (0..count).flat_map(arc).collect();
-        let degree = points.len() / count;
+        let degree = kind.degree();
         if !closed {
-            let [x, y] = at(2 * count);
+            let [x, y] = at(count);
             points.push([x, y, 1.0]);
         }
         Curve { degree, points, closed }
     }
 
-    /// The segment between two points, of the degree that arcs of this kind have.
-    pub fn segment(kind: Arcs, from: [f64; 2], to: [f64; 2]) -> Self {
-        let degree = match kind {
-            Arcs::Rational => 2,
-            Arcs::Polynomial => 3,
-        };
+    /// The segment between two points, of this degree, at least 1.
+    pub fn segment(degree: usize, from: [f64; 2], to: [f64; 2]) -> Self {
         let at = |k: usize| {
             let part = k as f64 / degree as f64;
             [(1.0 - part) * from[0] + part * to[0], (1.0 - part) * from[1] + part * to[1], 1.0]
@@ -83,17 +93,9 @@ impl Curve {
         self
     }
 
-    /// The curve with the points where it meets the axis x = 0 at its ends put on it exactly.
-    pub fn between_poles(mut self) -> Self {
-        for end in [0, self.points.len() - 1] {
-            self.points[end][0] = 0.0;
-        }
-        self
-    }
-
     /// How many arcs it has.
     fn arcs(&self) -> usize {
-        self.points.len() / self.degree
+        (self.points.len() - usize::from(!self.closed)) / self.degree
     }
 
     /// Control point `index` of arc `number`.
@@ -173,7 +175,7 @@ mod tests {
 
     #[test]
     fn a_pole_is_one_point_to_the_bit() {
-        let profile = Curve::circle(Arcs::Polynomial, -90.0, 180.0, 2).between_poles();
+        let profile = Curve::circle(Arcs::Polynomial, -90.0, 180.0, 2);
         for surface in revolve(&profile, &Curve::circle(Arcs::Polynomial, 0.0, 360.0, 5)) {
             let edge = if surface.number < 5 { 0..4 } else { 12..16 };
             let bits = |k: usize| surface.points[k].map(f64::to_bits);

@@ -1,10 +1,10 @@
 //! Shapes with known equations, as Bézier surfaces.
 //!
-//! Round shapes are rational: an arc of angle 2π / k has the control points and weights of L. Piegl and W. Tiller, *The
-//! NURBS Book*, 2nd edition, section 7.3. Their coordinates and weights are rounded to f64, so a shape follows its
+//! Round shapes are rational (see [`Arcs`]). Their coordinates and weights are rounded to f64, so a shape follows its
 //! equation to about 1e-16 of its size. Neighbours share the bits of their common control points.
 
 use super::model::{Model, ModelSurface};
+use super::revolution::{Arcs, Curve, revolve};
 
 /// Pseudo-random numbers: SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number
 /// generators", 2014). The same seed gives the same numbers everywhere.
@@ -92,67 +92,38 @@ pub fn bumpy(seed: u64, [m, n]: [usize; 2], centre: [f64; 3], size: f64, height:
     polynomial(m, n, points)
 }
 
-/// Control points `(x, y)` and weight of the `number`th of `count` arcs that make up the unit circle; `count` is at least
-/// 3. Neighbours' end points have the same bits, and for 4 arcs all points are exact.
-fn arc(count: usize, number: usize) -> [[f64; 3]; 3] {
-    let angle = |quarters: usize| {
-        // Multiples of a quarter turn are exact.
-        let part = quarters % (2 * count);
-        if (2 * part).is_multiple_of(count) {
-            [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]][(2 * part / count) % 4]
-        } else {
-            let (sin, cos) = (std::f64::consts::PI * part as f64 / count as f64).sin_cos();
-            [cos, sin]
-        }
-    };
-    let weight = (std::f64::consts::PI / count as f64).cos();
-    let [a, c] = [2 * number, 2 * number + 2].map(angle);
-    let b = if count == 4 { [a[0] + c[0], a[1] + c[1]] } else { angle(2 * number + 1).map(|x| x / weight) };
-    [[a[0], a[1], 1.0], [b[0], b[1], weight], [c[0], c[1], 1.0]]
+/// The model of these surfaces about the z axis, moved to have `centre` where their origin is.
+fn about(centre: [f64; 3], mut surfaces: Vec<ModelSurface>) -> Model {
+    for point in surfaces.iter_mut().flat_map(|surface| &mut surface.points) {
+        *point = [centre[0] + point[0], centre[1] + point[1], centre[2] + point[2], point[3]];
+    }
+    Model::numbered(surfaces)
 }
 
-/// The surfaces that a profile in the half-plane (radius, height) sweeps about the vertical axis through `centre`, one per
-/// arc of `around`. The profile's points are `[radius, height, weight]`; u runs along it, v around the axis.
-fn revolve(centre: [f64; 3], profile: &[[f64; 3]], around: usize) -> Vec<ModelSurface> {
-    let surface = |number| {
-        let mut points = Vec::new();
-        for &[radius, height, weight] in profile {
-            for [x, y, w] in arc(around, number) {
-                points.push([centre[0] + radius * x, centre[1] + radius * y, centre[2] + height, weight * w]);
-            }
-        }
-        ModelSurface { number: 0, degree_u: profile.len() - 1, degree_v: 2, rational: true, points, knots: None }
-    };
-    (0..around).map(surface).collect()
+/// The circle of radius 1 of `count` rational arcs.
+fn circle(count: usize) -> Curve {
+    Curve::circle(Arcs::Rational, 0.0, 360.0, count)
 }
 
 /// A sphere of 8 biquadratic octants. Each has an edge collapsed at a pole, the upper four at u = 1, the lower at u = 0.
 pub fn sphere(centre: [f64; 3], radius: f64) -> Model {
-    let mut surfaces = Vec::new();
     // The quarters of the profile from the equator up and from the south pole to the equator.
-    for number in [0, 3] {
-        let profile = arc(4, number).map(|[x, y, w]| [radius * x, radius * y, w]);
-        surfaces.extend(revolve(centre, &profile, 4));
-    }
-    Model::numbered(surfaces)
+    let quarter = |from| Curve::circle(Arcs::Rational, from, 90.0, 1).map(|[x, y]| [radius * x, radius * y]);
+    about(centre, [0.0, -90.0].into_iter().flat_map(|from| revolve(&quarter(from), &circle(4))).collect())
 }
 
 /// An open cylinder about the vertical axis through `centre`, of `height` half above and half below: 4 surfaces of
 /// degrees 1 along the axis (u, upwards) and 2 around it.
 pub fn cylinder(centre: [f64; 3], radius: f64, height: f64) -> Model {
-    let profile = [[radius, -0.5 * height, 1.0], [radius, 0.5 * height, 1.0]];
-    Model::numbered(revolve(centre, &profile, 4))
+    let profile = Curve::segment(1, [radius, -0.5 * height], [radius, 0.5 * height]);
+    about(centre, revolve(&profile, &circle(4)))
 }
 
 /// A torus about the vertical axis through `centre`: the circle of radius `minor` swept along that of radius `major`, of
 /// `around` surfaces along the great circle and `across` along the small one, each count at least 3; biquadratic.
 pub fn torus(centre: [f64; 3], major: f64, minor: f64, around: usize, across: usize) -> Model {
-    let mut surfaces = Vec::new();
-    for number in 0..across {
-        let profile = arc(across, number).map(|[x, y, w]| [major + minor * x, minor * y, w]);
-        surfaces.extend(revolve(centre, &profile, around));
-    }
-    Model::numbered(surfaces)
+    let section = circle(across).map(|[x, y]| [major + minor * x, minor * y]);
+    about(centre, revolve(&section, &circle(around)))
 }
 
 /// The same surface with degrees raised to `m` and `n`, each at least its own (Farin, section 5.1).
@@ -251,17 +222,6 @@ mod tests {
             let [x, y, z] = from(p);
             z - x * x - y * y
         });
-    }
-
-    #[test]
-    fn arcs_go_all_the_way_round() {
-        for count in 3..9 {
-            for number in 0..count {
-                let end = arc(count, number)[2];
-                let start = arc(count, (number + 1) % count)[0];
-                assert_eq!(end.map(f64::to_bits)[..2], start.map(f64::to_bits)[..2]);
-            }
-        }
     }
 
     #[test]

@@ -34,7 +34,7 @@ impl Transform {
     /// Turns about `axis` through the origin, which has to have a length, by `degrees`: counterclockwise for who looks against
     /// the axis. Quarter turns about a coordinate axis are exact.
     ///
-    /// Source: O. Rodrigues' formula, cos θ I + sin θ [a]ₓ + (1 − cos θ) a aᵀ for a unit axis a.
+    /// Source: O. Rodrigues' formula, `cos θ I + sin θ [a]ₓ + (1 − cos θ) a aᵀ` for a unit axis a.
     pub fn rotation(axis: [f64; 3], degrees: f64) -> Self {
         let length = axis[0].hypot(axis[1]).hypot(axis[2]);
         let a = axis.map(|x| x / length);
