@@ -5,31 +5,19 @@
 mod adapters;
 mod allowances;
 mod corpus;
+mod judging;
 
 use adapters::{ADAPTERS, Adapter};
 use allowances::{Allowed, in_common_view, skip};
 use corpus::{Case, Rays};
+use judging::{rays_per_case, residual, truths};
 use patchray_host::judge::{Agreement, Truth, allowance};
-use patchray_host::oracle::Oracle;
 use patchray_host::scanline::{Batch, Found, Outcome};
-use patchray_host::scene::model::ModelSurface;
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::trace::Precision;
-use rayon::prelude::*;
 
 /// Rays per case and order, unless the environment says otherwise.
 const RAYS: usize = 20_000;
-
-fn rays_per_case() -> usize {
-    std::env::var("PATCHRAY_RAYS").ok().and_then(|text| text.parse().ok()).unwrap_or(RAYS)
-}
-
-/// What the oracle knows of a case's rays.
-fn truths(case: &Case, rays: &[RayLine]) -> Vec<Truth> {
-    let oracle = Oracle::new(&case.model);
-    let judge = |ray: &RayLine| Truth::from(&oracle.trace(ray.origin, ray.direction, ray.t_min, ray.t_max));
-    rays.par_iter().map(judge).collect()
-}
 
 /// Everything about one adapter on one batch of rays.
 #[derive(Debug, Default)]
@@ -66,27 +54,11 @@ fn run(adapter: &Adapter, case: &Case, rays: &[RayLine], truths: &[Truth], least
     report
 }
 
-/// |S(u, v) − (o + t d)| by de Casteljau's algorithm in `f64`, from the file's control points.
-fn residual(surface: &ModelSurface, ray: &RayLine, found: &Found) -> f64 {
-    let homogeneous = |&[x, y, z, w]: &[f64; 4]| [x * w, y * w, z * w, w];
-    let collapse = |mut points: Vec<[f64; 4]>, t: f64| {
-        while points.len() > 1 {
-            points = points.windows(2).map(|p| std::array::from_fn(|k| (1.0 - t) * p[0][k] + t * p[1][k])).collect();
-        }
-        points[0]
-    };
-    let rows = surface.points.chunks(surface.degree_v + 1);
-    let along = rows.map(|row| collapse(row.iter().map(homogeneous).collect(), found.v)).collect();
-    let [x, y, z, w] = collapse(along, found.u);
-    let gap = |k: usize, c: f64| c / w - (ray.origin[k] + found.t * ray.direction[k]);
-    (gap(0, x).powi(2) + gap(1, y).powi(2) + gap(2, z).powi(2)).sqrt()
-}
-
 /// All cases with one order of rays, through all adapters.
 fn suite(order: Rays) {
     let mut failures = Vec::new();
     for case in corpus::cases() {
-        let rays = case.rays(order, rays_per_case());
+        let rays = case.rays(order, rays_per_case(RAYS));
         let truths = truths(&case, &rays);
         let hits = truths.iter().filter(|truth| truth.closest.is_some()).count();
         assert!(hits * 10 > rays.len(), "{}: only {hits} of {} rays hit anything", case.name, rays.len());

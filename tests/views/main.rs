@@ -1,0 +1,26 @@
+//! The rays of a view: what all methods answer, from many cameras, against the oracle and against rays traced one by one.
+//!
+//! The models, the judge and the allowances are those of the suite `methods`. `PATCHRAY_RAYS=N` traces N rays per case
+//! instead of the default.
+
+mod answers;
+mod cameras;
+#[path = "../common/mod.rs"]
+mod common;
+mod compare;
+mod image;
+mod order;
+mod rooms;
+mod rubbish;
+
+#[path = "../methods/adapters.rs"]
+#[allow(dead_code, reason = "of the table of adapters only what allowances are looked up by")]
+mod adapters;
+#[path = "../methods/allowances.rs"]
+#[allow(dead_code, reason = "the common view is the other suite's")]
+mod allowances;
+#[path = "../methods/corpus.rs"]
+#[allow(dead_code, reason = "rays of no view are the other suite's")]
+mod corpus;
+#[path = "../methods/judging.rs"]
+mod judging;
