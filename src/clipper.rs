@@ -131,7 +131,8 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
         let Clipper { surface, planes, limits, room } = self;
         let ClipRoom { whole, part, pending, roots, basis } = &mut **room;
         let whole: &[P::Flat] = whole.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
-        let Some(mut part) = Part::whole(surface.net.degrees(), whole, part).map_err(|Full| Limit::Scratch)? else {
+        let part = Part::whole(surface.net.degrees(), whole, planes.projection_error(), part);
+        let Some(mut part) = part.map_err(|Full| Limit::Scratch)? else {
             return Ok(());
         };
         if let Some(region) = region {

@@ -108,15 +108,15 @@ pub struct Extent {
 }
 
 impl<S: Scalar> Limits<S> {
-    /// The same budgets for a call that goes on counting where `work` stands.
+    /// The same budgets for a call that goes on counting where `work` stands, and began when it had counted this many spans.
     #[inline(always)]
-    pub(crate) fn beyond(&self, work: &Work) -> Self {
+    pub(crate) fn beyond(&self, work: &Work, spans: u32) -> Self {
         Limits {
             surfaces: self.surfaces.saturating_add(work.surfaces_tested),
             nodes: self.nodes.saturating_add(work.nodes_visited),
             patches: self.patches.saturating_add(work.patches_tested),
             voxels: self.voxels.saturating_add(work.voxels_visited),
-            spans: self.spans.saturating_add(work.spans_visited),
+            spans: self.spans.saturating_add(spans),
             newton_steps: self.newton_steps.saturating_add(work.newton_steps),
             clip_steps: self.clip_steps.saturating_add(work.clip_steps),
             bisections: self.bisections.saturating_add(work.bisections),

@@ -281,11 +281,13 @@ impl<'m, S: Scalar> Line<'m, S> {
             &mut Work,
         ) -> Result<Option<Root<S>>, Limit>,
     ) -> Result<Option<Hit<S>>, GaveUp<S>> {
-        let (nearby, limits) = &match self.nearby(view.patches(), ray, limits, work) {
-            Ok(Some(found)) => found,
+        let before = work.spans_visited;
+        let nearby = match self.nearby(view.patches(), ray, limits, work) {
+            Ok(Some(nearby)) => nearby,
             Ok(None) => return Ok(None),
             Err(limit) => return Err(GaveUp { limit, best: None }),
         };
+        let limits = &limits.beyond(work, before);
         let Facing { planes, range, .. } = &view.facing(ray);
         let mut best: Option<(Root<S>, u32)> = None;
         let ended = nearby.surfaces(limits, work, |number, near, in_line, work| {
@@ -314,7 +316,7 @@ impl<'m, S: Scalar> Line<'m, S> {
         }
     }
 
-    /// The spans that may hold a ray, and the budgets of this call on top of what `work` counts already; `None` if no span does.
+    /// The spans that may hold a ray; `None` if none does.
     #[inline(always)]
     pub(crate) fn nearby<'l>(
         &'l mut self,
@@ -322,16 +324,12 @@ impl<'m, S: Scalar> Line<'m, S> {
         ray: &ViewRay<S>,
         limits: &Limits<S>,
         work: &mut Work,
-    ) -> Result<Option<(InLine<'l, S>, Limits<S>)>, Limit> {
-        let most = limits.spans.saturating_add(work.spans_visited);
-        self.go_to(ray, most, work)?;
+    ) -> Result<Option<InLine<'l, S>>, Limit> {
+        self.go_to(ray, limits.spans.saturating_add(work.spans_visited), work)?;
         let mut nearby =
             InLine { spans: self.spans, list: self.active.get(..self.count).unwrap_or(&[]), x: ray.place[0], patches };
         nearby.skip();
-        if nearby.list.is_empty() {
-            return Ok(None);
-        }
-        Ok(Some((nearby, Limits { spans: most, ..limits.beyond(work) })))
+        Ok(if nearby.list.is_empty() { None } else { Some(nearby) })
     }
 }
 

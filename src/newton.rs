@@ -197,9 +197,9 @@ impl<S: Scalar> Place<S> {
         basis: &mut BasisView<'_, S>,
     ) -> Result<Root<S>, Limit> {
         let depth = planes.depth_on(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
-        // Between two points of the frame f and g differ by 4 at most and depth by 2, and derivatives by a degree times that:
+        // Between two points of the frame f and g differ by 4 times its reach at most and depth by 2, and derivatives by a degree times that:
         // a bound of the normal's three parts together, which tells most roots from grazing ones.
-        let longest = S::from_u32((64 * net.degree_u() * net.degree_v()) as u32);
+        let longest = S::from_u32((64 * net.degree_u() * net.degree_v()) as u32) * (planes.reach() * planes.reach());
         let steep = self.local.determinant.abs() >= sine(limits.tolerance) * longest;
         let grazing = !steep && self.is_tangent(net, planes, limits, basis)?;
         let [u, v] = self.at;

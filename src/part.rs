@@ -16,13 +16,19 @@ pub(crate) struct Part<'a, F: Flat> {
     reach: F::Scalar,
     /// By how much the coefficients may be off.
     pub(crate) error: F::Scalar,
+    /// By how much those of the whole may be.
+    projected: F::Scalar,
 }
 
 impl<'a, F: Flat> Part<'a, F> {
-    /// The whole surface, its projected net copied into lent room; `None` if it is seen to pass the ray by.
+    /// The whole surface, its projected net, off by `error` at most, copied into lent room; `None` if it is seen to pass the ray by.
     #[inline(always)]
-    pub(crate) fn whole(degrees: Degrees, whole: &[F], room: &'a mut VecView<F>) -> Result<Option<Self>, Full> {
-        let error = projection_error();
+    pub(crate) fn whole(
+        degrees: Degrees,
+        whole: &[F],
+        error: F::Scalar,
+        room: &'a mut VecView<F>,
+    ) -> Result<Option<Self>, Full> {
         let Some(reach) = straddling(whole, error) else {
             return Ok(None);
         };
@@ -31,7 +37,7 @@ impl<'a, F: Flat> Part<'a, F> {
         }
         let net = room.get_mut(..whole.len()).ok_or(Full)?;
         net.iter_mut().zip(whole).for_each(|(slot, &point)| *slot = point);
-        Ok(Some(Part { region: Region::WHOLE, degrees, net, reach, error }))
+        Ok(Some(Part { region: Region::WHOLE, degrees, net, reach, error, projected: error }))
     }
 
     /// To a region of the surface: from what it is, if that holds it, else from the whole again.
@@ -43,7 +49,7 @@ impl<'a, F: Flat> Part<'a, F> {
             from = old;
         } else {
             self.net.iter_mut().zip(whole).for_each(|(slot, &point)| *slot = point);
-            (self.reach, self.error) = (reach(whole), projection_error());
+            (self.reach, self.error) = (reach(whole), self.projected);
         }
         for (direction, (outer, inner)) in
             [Direction::U, Direction::V].into_iter().zip(from.into_iter().zip(region.sides))
@@ -112,12 +118,6 @@ fn reach<F: Flat>(net: &[F]) -> F::Scalar {
     }
     pairs.remainder().iter().for_each(|&p| add([p, p]));
     most[0].greater(most[1]).greater(most[2].greater(most[3]))
-}
-
-/// By how much a projected coefficient may be off: some three roundings of numbers below 4; twice that, so that an edge which
-/// two surfaces share but for its last bits is lost by neither.
-fn projection_error<S: Scalar>() -> S {
-    S::EPSILON * S::from_u32(8)
 }
 
 /// The largest |f| or |g|, if both take both signs, or nearly; if not, no point of the surface is on the ray.

@@ -41,6 +41,8 @@ pub struct Planes<S> {
     t_origin: S,
     t_per_depth: S,
     interval: Interval<S>,
+    /// Bounds all coordinates: 1 in the frame, 2 where it is turned.
+    reach: S,
 }
 
 /// The place of the centre among a box's four numbers of an axis, the others being its three vectors'.
@@ -97,6 +99,7 @@ impl<S: Scalar> Planes<S> {
             t_origin,
             t_per_depth,
             interval,
+            reach: S::ONE,
         }
     }
 
@@ -109,7 +112,8 @@ impl<S: Scalar> Planes<S> {
         t_per_depth: S,
         interval: Interval<S>,
     ) -> Self {
-        Planes::new(Axis::Z, origin, direction, [S::ZERO; 3], t_origin, t_per_depth, interval)
+        let planes = Planes::new(Axis::Z, origin, direction, [S::ZERO; 3], t_origin, t_per_depth, interval);
+        Planes { reach: S::TWO, ..planes }
     }
 
     /// The moved origin, in the frame: where depth is 0.
@@ -126,6 +130,18 @@ impl<S: Scalar> Planes<S> {
     #[inline(always)]
     pub fn at(&self, depth: S) -> [S; 3] {
         core::array::from_fn(|k| self.origin[k] + self.direction[k] * depth)
+    }
+
+    /// A bound of the coordinates' sizes.
+    pub(crate) fn reach(&self) -> S {
+        self.reach
+    }
+
+    /// By how much a projected coefficient may be off: some three roundings of numbers below 4 times the coordinates; twice
+    /// that, so that an edge which two surfaces share but for its last bits is lost by neither.
+    #[inline(always)]
+    pub(crate) fn projection_error(&self) -> S {
+        S::EPSILON * S::from_u32(8) * self.reach
     }
 
     /// 1 / direction, component by component; infinite where the direction is 0.

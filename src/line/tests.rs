@@ -112,7 +112,7 @@ const WHOLE: [f64; 2] = [-1.0, 1.0];
 fn met(view: &View<'_, Plain<f64>>, line: &mut Line<'_, f64>, place: [f64; 2]) -> Vec<usize> {
     let (limits, mut work) = (Limits::default(), Work::default());
     let ray = view.ray(place, &Interval::ahead()).unwrap();
-    let Some((nearby, limits)) = line.nearby(view.patches(), &ray, &limits, &mut work).unwrap() else {
+    let Some(nearby) = line.nearby(view.patches(), &ray, &limits, &mut work).unwrap() else {
         return Vec::new();
     };
     let (mut met, facing) = (Vec::new(), view.facing(&ray));

@@ -49,15 +49,17 @@ pub fn closest_in_view<P: Point>(
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let last = core::mem::replace(&mut memory.last, u32::MAX);
-    let (nearby, limits) = &match line.nearby(view.patches(), ray, limits, work) {
-        Ok(Some(found)) => found,
+    let before = work.spans_visited;
+    let nearby = &match line.nearby(view.patches(), ray, limits, work) {
+        Ok(Some(nearby)) => nearby,
         Ok(None) => return Ok(None),
         Err(limit) => return Err(GaveUp { limit, best: None }),
     };
+    let limits = &limits.beyond(work, before);
     let ray = &view.facing(ray);
     let mut best = None;
     let ended =
-        closest_so_far(view, *nearby, memory, last, scan_line.wrapping_add(1), ray, limits, room, &mut best, work);
+        closest_so_far(view, nearby, memory, last, scan_line.wrapping_add(1), ray, limits, room, &mut best, work);
     let best = best.map(|Best { root, surface, .. }| root.hit(surface, ray.planes.t(root.depth)));
     match ended {
         Ok(()) => Ok(best),
@@ -68,7 +70,7 @@ pub fn closest_in_view<P: Point>(
 #[inline(always)]
 fn closest_so_far<P: Point>(
     view: &View<'_, P>,
-    nearby: InLine<'_, P::Scalar>,
+    nearby: &InLine<'_, P::Scalar>,
     memory: &mut Following<'_, P::Scalar>,
     last: u32,
     stamp: u32,
@@ -102,7 +104,7 @@ struct Search<'a, 's, 'm, P: Point> {
     view: &'a View<'m, P>,
     ray: &'a Facing<P::Scalar>,
     limits: &'a Limits<P::Scalar>,
-    nearby: InLine<'a, P::Scalar>,
+    nearby: &'a InLine<'a, P::Scalar>,
     room: &'a mut ClipRoom<'s, P>,
     /// The surface whose projected net the room holds.
     projected: Option<u32>,

@@ -39,15 +39,17 @@ pub fn closest_in_view<P: Point>(
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let last = core::mem::replace(&mut memory.last, u32::MAX);
-    let (nearby, limits) = &match line.nearby(view.patches(), ray, limits, work) {
-        Ok(Some(found)) => found,
+    let before = work.spans_visited;
+    let nearby = &match line.nearby(view.patches(), ray, limits, work) {
+        Ok(Some(nearby)) => nearby,
         Ok(None) => return Ok(None),
         Err(limit) => return Err(GaveUp { limit, best: None }),
     };
+    let limits = &limits.beyond(work, before);
     let ray = &view.facing(ray);
     let mut best = None;
     let ended =
-        closest_so_far(view, *nearby, memory, last, scan_line.wrapping_add(1), ray, limits, scratch, &mut best, work);
+        closest_so_far(view, nearby, memory, last, scan_line.wrapping_add(1), ray, limits, scratch, &mut best, work);
     let best = best.map(|Best { root, surface, .. }| root.hit(surface, ray.planes.t(root.depth)));
     match ended {
         Ok(()) => Ok(best),
@@ -58,7 +60,7 @@ pub fn closest_in_view<P: Point>(
 #[inline(always)]
 fn closest_so_far<P: Point>(
     view: &View<'_, P>,
-    nearby: InLine<'_, P::Scalar>,
+    nearby: &InLine<'_, P::Scalar>,
     memory: &mut Following<'_, P::Scalar>,
     last: u32,
     stamp: u32,
@@ -101,7 +103,7 @@ fn closest_so_far<P: Point>(
 struct Search<'a, 's, 'm, P: Point> {
     view: &'a View<'m, P>,
     ray: &'a Facing<P::Scalar>,
-    nearby: InLine<'a, P::Scalar>,
+    nearby: &'a InLine<'a, P::Scalar>,
     solver: Solver<'a, 's, 'm, P>,
 }
 
