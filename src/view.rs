@@ -304,7 +304,7 @@ impl<'m, P: Point> View<'m, P> {
         let t_per_depth = *unscale * inverse;
         let direction = [slopes[0], slopes[1], one];
         let planes = Planes::turned(origin, direction, ahead * t_per_depth, t_per_depth, interval);
-        let turning = [0, 1].map(|k| (right[k] - slopes[k] * right[2]) * inverse);
+        let turning = [right[0] - slopes[0] * right[2], right[1] - slopes[1] * right[2]].map(|c| c * inverse);
         Facing { x, planes, range, ahead, turning }
     }
 }

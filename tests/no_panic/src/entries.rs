@@ -19,7 +19,7 @@ use patchray::patch::Patches;
 use patchray::patch::{Crossing, Parallelepiped, Patch, Pierce};
 use patchray::pieces::{InKnots, Part, Piece, PieceError, PieceMemory, Pieces};
 use patchray::planes::{DepthRange, Planes, Projected, project_net};
-use patchray::point::{Plain, Point, Weighted};
+use patchray::point::Point;
 use patchray::ray::{Hit, Interval, Ray, RayError};
 use patchray::region::{Order, Region};
 use patchray::scalar::{Scalar, Vector3};
@@ -28,18 +28,18 @@ use patchray::subdivide::{
     PatchMemory, SubdivideError, SubdivideScratch, Subdivided, Subdivision, TreeMemory, subdivide,
 };
 use patchray::surface::{Direction, Net, NetError, Surface};
-use patchray::tree::{Descent, Tree};
 use patchray::sweep::InGrid;
+use patchray::tree::{Descent, Tree};
 use patchray::verify::{Verdict, testing_ray, verdict};
 use patchray::walk::{Voxel, Walk};
 
 /// Capacities for the highest degree: the owner's choice, and the largest that makes sense.
-const ORDER: usize = MAX_DEGREE + 1;
-const POINTS: usize = ORDER * ORDER;
-const PENDING: usize = 64;
+pub(crate) const ORDER: usize = MAX_DEGREE + 1;
+pub(crate) const POINTS: usize = ORDER * ORDER;
+pub(crate) const PENDING: usize = 64;
 const HITS: usize = 32;
 
-type Found<S> = Result<Option<Hit<S>>, GaveUp<S>>;
+pub(crate) type Found<S> = Result<Option<Hit<S>>, GaveUp<S>>;
 
 /// A scene's memory, filled by the kernel or by anything else.
 #[derive(Debug)]
@@ -55,7 +55,7 @@ pub struct LentScene<P: Point> {
 impl<P: Point> LentScene<P> {
     /// # Safety
     /// See [`Lent::slots`].
-    unsafe fn view<'m>(&self) -> Scene<'m, P> {
+    pub(crate) unsafe fn view<'m>(&self) -> Scene<'m, P> {
         // SAFETY: the caller keeps the contract of `slots`.
         let (points, surfaces) = unsafe { (self.points.slots(), self.surfaces.slots()) };
         // SAFETY: likewise.
@@ -87,7 +87,7 @@ pub struct LentPatches<S> {
 impl<S: Scalar> LentPatches<S> {
     /// # Safety
     /// See [`Lent::slots`].
-    unsafe fn patches<'m>(&self) -> Patches<'m, S> {
+    pub(crate) unsafe fn patches<'m>(&self) -> Patches<'m, S> {
         // SAFETY: the caller keeps the contract of `slots`.
         unsafe { Patches::new(self.patches.slots(), self.first.slots()) }
     }
@@ -752,27 +752,6 @@ unsafe extern "C" fn arena<P: Point>(slots: &Lent<P>, count: usize, at: usize, v
 extern "C" fn worst_case<P: Point>(limits: &Limits<P::Scalar>, extent: &Extent, out: &mut (Work, [u32; Work::COUNT])) {
     let work = limits.worst_case(extent);
     *out = (work, work.counts());
-}
-
-/// An exported function's address. The compiler has to expect callers that it does not see.
-#[derive(Debug)]
-#[repr(transparent)]
-pub struct Entry(*const ());
-
-// SAFETY: the address of code, which nothing writes to.
-unsafe impl Sync for Entry {}
-
-/// Exports generic functions for each number type and kind of control points.
-macro_rules! export {
-    ($($function:ident)*) => {
-        $(export!($function: "f32_plain" Plain<f32>, "f32_weighted" Weighted<f32>, "f64_plain" Plain<f64>, "f64_weighted" Weighted<f64>);)*
-    };
-    ($function:ident: $($kind:literal $point:ty),*) => {
-        $(const _: () = {
-            #[unsafe(export_name = concat!("reach_", stringify!($function), "_", $kind))]
-            static ENTRY: Entry = Entry($function::<$point> as *const ());
-        };)*
-    };
 }
 
 export! {

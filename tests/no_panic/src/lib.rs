@@ -6,8 +6,11 @@
 //! Nothing here runs: `check` links the library and looks at what is left. Each entry point is named
 //! `reach_WHAT_SCALAR_POINT`.
 
+#[macro_use]
+mod export;
 mod entries;
 mod errors;
+mod views;
 
 /// Called by nothing but the panic handler, and defined nowhere: where it is wanted, a panic is reachable.
 #[panic_handler]
@@ -32,7 +35,7 @@ impl<T> Lent<T> {
     ///
     /// # Safety
     /// `first` points to `count` slots that nothing else uses while the slice lives.
-    unsafe fn slots<'m>(&self) -> &'m mut [T] {
+    pub(crate) unsafe fn slots<'m>(&self) -> &'m mut [T] {
         // SAFETY: as above.
         unsafe { core::slice::from_raw_parts_mut(self.first, self.count) }
     }
