@@ -11,8 +11,9 @@ use adapters::{ADAPTERS, Adapter};
 use allowances::{Allowed, in_common_view, skip};
 use corpus::{Case, Rays};
 use judging::{rays_per_case, residual, truths};
+use patchray_host::batch::Batch;
 use patchray_host::judge::{Agreement, Truth, allowance};
-use patchray_host::scanline::{Batch, Found, Outcome};
+use patchray_host::scanline::{Found, Outcome};
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::trace::Precision;
 

@@ -8,10 +8,11 @@ use clap::Args;
 
 use super::load::{self, Loaded};
 use super::{Failure, StatsOutputs, check_outputs, pool, progress, say, say_gave_up, summary};
+use crate::batch::Batch;
 use crate::number::Number;
 use crate::output::{Output, OutputError};
 use crate::report::answers::{self, Answer, Answers};
-use crate::scanline::{Batch, Found, LaneBytes, Outcome, Tally, Tracer};
+use crate::scanline::{Found, LaneBytes, Outcome, Tally, Tracer};
 use crate::scene::rays::{RayBatch, Rays};
 use crate::scene::trace::Precision;
 use crate::settings::{Flags, Settings};

@@ -8,9 +8,10 @@ use rayon::prelude::*;
 
 use super::load::{self, Loaded};
 use super::{Failure, StatsOutputs, check_outputs, pool, progress, say, say_gave_up, summary};
+use crate::batch::Lanes;
 use crate::output::Output;
 use crate::picture::{GAVE_UP, Picture, Rgb, encode};
-use crate::scanline::{Lanes, Outcome, Tally, Tracer};
+use crate::scanline::{Outcome, Tally, Tracer};
 use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
 use crate::scene::rays::RayLine;

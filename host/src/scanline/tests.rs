@@ -1,6 +1,7 @@
 use clap::ValueEnum;
 
 use super::*;
+use crate::batch::Batch;
 use crate::lower::Stages;
 use crate::method::NewtonCoherent;
 use crate::prepared::Prepared;
