@@ -16,3 +16,4 @@ pub mod scene;
 pub mod settings;
 pub mod shade;
 pub mod stats;
+pub mod viewed;

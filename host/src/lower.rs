@@ -3,7 +3,6 @@
 //! The kernel only borrows. [`Lowered`] asks each stage how many slots it needs, allocates that many, has them filled, and
 //! gives views of them again. Only the stages that a method needs are built: see [`Stages::of`].
 
-use miette::Diagnostic;
 use patchray::bernstein::MAX_DEGREE;
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::patch::{Parallelepiped, Patch, Patches};
@@ -13,11 +12,15 @@ use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions,
 use patchray::subdivide::{PatchMemory, SubdivideError, SubdivideScratch, Subdivision, TreeMemory, subdivide};
 use patchray::surface::Net;
 use patchray::tree::Tree;
-use thiserror::Error;
 
 use crate::memory::{Bytes, Kind, Slots};
 use crate::scene::model::{Model, ModelSurface};
 use crate::scene::trace::Method;
+
+mod error;
+mod view;
+
+pub use error::LowerError;
 
 /// One more than the highest degree: the capacity of the scratch, so that it serves every valid surface.
 pub const ORDER: usize = MAX_DEGREE + 1;
@@ -43,65 +46,6 @@ impl<S: Scalar> FromFile for Weighted<S> {
     }
 }
 
-/// Why a model could not be lowered.
-#[derive(Debug, Error, Diagnostic)]
-pub enum LowerError {
-    /// A surface that the number type cannot hold.
-    #[error("surface {number} cannot be traced: {reason}")]
-    #[diagnostic(help("use --precision f64 or other units, or --skip-invalid to leave such surfaces out"))]
-    Surface {
-        /// Its index in the model.
-        index: usize,
-        /// Its number in its file.
-        number: usize,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// The model has an extent in the file and none in the number type.
-    #[error("the model shrinks to a point in f32: its diagonal is {diagonal:e}")]
-    #[diagnostic(help("use --precision f64, larger units, or an origin nearer to the model"))]
-    Vanishes {
-        /// The diagonal of its control points, in the file's units.
-        diagonal: f64,
-    },
-    /// A surface makes too many patches.
-    #[error("surface {number} needs more patches than it is given: more than {given}")]
-    #[diagnostic(help("raise --limit patches-per-surface=N, or subdivide less with a larger --flatness"))]
-    Patches {
-        /// Its number in its file.
-        number: usize,
-        /// The most that it may make.
-        given: u32,
-    },
-    /// More memory than the limit `arena-bytes` allows.
-    #[error("the scene needs at least {needed} bytes of memory and is given {given}: {detail}")]
-    #[diagnostic(help("raise --limit arena-bytes=N, or make fewer patches (--flatness) and voxels (--grid-density)"))]
-    Arena {
-        /// Bytes needed, by all stages so far.
-        needed: u64,
-        /// Bytes allowed.
-        given: u64,
-        /// The bytes by kind.
-        detail: String,
-    },
-    /// The system has not as much memory.
-    #[error("the system does not give the {needed} bytes of memory that the scene's {kind} need")]
-    #[diagnostic(help("make fewer patches (--flatness) and voxels (--grid-density), or use --precision f32"))]
-    System {
-        /// Bytes needed for this kind of slot.
-        needed: u64,
-        /// Which kind of slot.
-        kind: &'static str,
-    },
-    /// More surfaces, points, patches or voxels than the kernel can number.
-    #[error("the scene is too large: {0}")]
-    #[diagnostic(help("make fewer patches (--flatness) and voxels (--grid-density), or split the scene"))]
-    TooLarge(String),
-    /// The kernel contradicted itself; a defect.
-    #[error("building the scene failed: {0}")]
-    Internal(String),
-}
-
 /// Which stages to build beside the scene itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stages {
@@ -114,16 +58,42 @@ pub struct Stages {
 }
 
 impl Stages {
+    /// None: the scene alone.
+    pub const NONE: Self = Stages { patches: false, tree: false, grids: false };
+
+    /// Patches alone.
+    pub const PATCHES: Self = Stages { patches: true, tree: false, grids: false };
+
     /// All there are.
     pub const ALL: Self = Stages { patches: true, tree: true, grids: true };
 
-    /// Those that a method needs.
+    /// Those that a method needs for any rays; one that [needs a view](Method::needs_view), for that.
     pub fn of(method: Method) -> Self {
         match method {
-            Method::Newton => Stages { patches: true, tree: true, grids: false },
-            Method::NewtonCoherent | Method::ClippingCoherent => Stages { patches: true, tree: false, grids: true },
-            Method::Clipping => Stages { patches: false, tree: false, grids: false },
+            Method::Newton => Stages { tree: true, ..Stages::PATCHES },
+            Method::NewtonCoherent | Method::ClippingCoherent => Stages { grids: true, ..Stages::PATCHES },
+            Method::Clipping => Stages::NONE,
+            Method::NewtonPredicted | Method::ClippingPredicted => Stages::PATCHES,
         }
+    }
+
+    /// Those that a method needs for the rays of a view: no tree and no grids.
+    pub fn of_view(method: Method) -> Self {
+        if method == Method::Clipping { Stages::NONE } else { Stages::PATCHES }
+    }
+
+    /// All that is in either.
+    pub fn and(self, other: Self) -> Self {
+        Stages {
+            patches: self.patches || other.patches,
+            tree: self.tree || other.tree,
+            grids: self.grids || other.grids,
+        }
+    }
+
+    /// Whether there are patches: trees and grids are made of them.
+    fn has_patches(self) -> bool {
+        self.patches || self.tree || self.grids
     }
 }
 
@@ -168,6 +138,8 @@ pub struct Lowered<P: Point> {
     grids: Vec<GridSlot<P::Scalar>>,
     grid_offsets: Vec<u32>,
     grid_references: Vec<u32>,
+    /// Of a view of these; empty until one is taken.
+    view: view::ViewSlots<P>,
 }
 
 /// The control points of a surface in the kernel's type, checked.
@@ -210,7 +182,7 @@ impl<P: FromFile> Lowered<P> {
         if diagonal > 0.0 && !(lowered.scene().frame().diagonal() > P::Scalar::ZERO) {
             return Err(LowerError::Vanishes { diagonal });
         }
-        if stages.patches || stages.tree || stages.grids {
+        if stages.has_patches() {
             lowered.subdivide(&preparation.subdivision, numbers, &mut slots)?;
         }
         if stages.grids {
@@ -265,6 +237,7 @@ impl<P: FromFile> Lowered<P> {
             grids: Vec::new(),
             grid_offsets: Vec::new(),
             grid_references: Vec::new(),
+            view: view::ViewSlots::none(),
         })
     }
 
@@ -367,7 +340,7 @@ impl<P: Point> Lowered<P> {
         bytes.add::<SurfaceSlot<P::Scalar>>(Kind::Surfaces, self.surfaces.len());
         bytes.add::<u32>(Kind::SceneVoxels, self.offsets.len());
         bytes.add::<u32>(Kind::SceneReferences, self.references.len());
-        if stages.patches || stages.tree || stages.grids {
+        if stages.has_patches() {
             bytes.add::<Patch<P::Scalar>>(Kind::Patches, self.patches.len());
             bytes.add::<u32>(Kind::PatchRanges, self.first.len());
         }

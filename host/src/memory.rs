@@ -34,6 +34,18 @@ pub enum Kind {
     GridVoxels,
     /// References to patches in those grids.
     GridReferences,
+    /// Control points turned to a view.
+    ViewPoints,
+    /// What a view sees of each surface.
+    ViewSurfaces,
+    /// Patches turned to a view.
+    ViewPatches,
+    /// What a view sees of each patch.
+    ViewSights,
+    /// The rows of runs of patches in a view.
+    ViewRuns,
+    /// Where each surface's runs begin.
+    ViewRunRanges,
 }
 
 impl Kind {
@@ -51,6 +63,12 @@ impl Kind {
             Kind::Grids => "grid headers",
             Kind::GridVoxels => "grid voxels",
             Kind::GridReferences => "grid references",
+            Kind::ViewPoints => "view points",
+            Kind::ViewSurfaces => "view surfaces",
+            Kind::ViewPatches => "view patches",
+            Kind::ViewSights => "view sights",
+            Kind::ViewRuns => "view runs",
+            Kind::ViewRunRanges => "view run ranges",
         }
     }
 }
@@ -64,6 +82,14 @@ impl Bytes {
     /// Adds `count` slots of type `T`.
     pub fn add<T>(&mut self, kind: Kind, count: usize) {
         *self.0.entry(kind).or_default() += (size_of::<T>() as u64).saturating_mul(count as u64);
+    }
+
+    /// Adds those of another part.
+    pub fn add_all(&mut self, other: &Bytes) {
+        for (kind, bytes) in other.iter() {
+            let sum = self.0.entry(kind).or_default();
+            *sum = sum.saturating_add(bytes);
+        }
     }
 
     /// Bytes of one kind.
@@ -102,6 +128,11 @@ pub(crate) struct Slots {
 impl Slots {
     pub(crate) fn new(given: u64) -> Self {
         Slots { asked: Bytes::default(), given }
+    }
+
+    /// More slots beside some that were given before, under a bound on both together.
+    pub(crate) fn beside(before: Bytes, given: u64) -> Self {
+        Slots { asked: before, given }
     }
 
     /// Notes that slots of type `T` are needed.

@@ -16,6 +16,8 @@ use patchray::tree::Tree;
 
 use crate::lower::{Lowered, NET, ORDER};
 
+pub mod in_view;
+
 /// Domains that may wait to be clipped: more than 53 bits can be halved apart in.
 pub const PENDING: usize = 64;
 

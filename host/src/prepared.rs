@@ -4,8 +4,11 @@ use patchray::point::{Plain, Point, Weighted};
 
 use crate::lower::{LowerError, Lowered, Stages, unfit};
 use crate::memory::Bytes;
+use crate::method::in_view::{ClippingPredicted, NewtonPredicted, ViewMethod};
 use crate::method::{AllHits, AnyHit, Clipping, ClippingCoherent, Method, Newton, NewtonCoherent, Views};
-use crate::scanline::{Found, MethodTracer, Told, Tracer};
+use crate::scanline::view::{LineOptions, ViewTracer, most_lane_bytes};
+use crate::scanline::{Found, LaneBytes, MethodTracer, Told, Tracer};
+use crate::scene::camera;
 use crate::scene::model::Model;
 use crate::scene::trace::{Method as Which, Precision};
 use crate::settings::Settings;
@@ -59,6 +62,45 @@ where
     Box::new(MethodTracer::<M, P>::new(views, settings.limits()))
 }
 
+/// The tracer of the method M for the scan lines of a picture.
+fn view_tracer<'m, M, P>(
+    lowered: &'m mut Lowered<P>,
+    picture: &camera::View,
+    settings: &Settings,
+    options: LineOptions,
+    others: bool,
+) -> Result<Box<dyn Tracer + 'm>, LowerError>
+where
+    M: ViewMethod<P> + 'm,
+    P: Point,
+{
+    let (views, seen) = lowered.seen(picture)?;
+    let others = others.then(|| rays_tracer(views, settings));
+    Ok(Box::new(ViewTracer::<M, P>::new((views.scene, seen), picture, settings.limits(), options, others)))
+}
+
+fn most_lane_bytes_of<P: Point>(method: Which, lowered: &Lowered<P>) -> LaneBytes {
+    let (surfaces, patches) = (lowered.scene().len(), lowered.patches().all().len());
+    match method {
+        Which::Newton => most_lane_bytes::<Newton, P>(surfaces, patches),
+        Which::NewtonCoherent => most_lane_bytes::<NewtonCoherent, P>(surfaces, patches),
+        Which::Clipping => most_lane_bytes::<Clipping, P>(surfaces, surfaces),
+        Which::ClippingCoherent => most_lane_bytes::<ClippingCoherent, P>(surfaces, patches),
+        Which::NewtonPredicted => most_lane_bytes::<NewtonPredicted, P>(surfaces, patches),
+        Which::ClippingPredicted => most_lane_bytes::<ClippingPredicted, P>(surfaces, patches),
+    }
+}
+
+/// The tracer of any rays, of the closest hits.
+fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
+    match settings.method.of_any_rays() {
+        Which::Newton => tracer::<Newton, _>(views, settings),
+        Which::NewtonCoherent | Which::NewtonPredicted => tracer::<NewtonCoherent, _>(views, settings),
+        Which::Clipping => tracer::<Clipping, _>(views, settings),
+        Which::ClippingCoherent | Which::ClippingPredicted => tracer::<ClippingCoherent, _>(views, settings),
+    }
+}
+
 impl Prepared {
     /// Lowers `model` in the precision of `settings`, and builds `stages`.
     ///
@@ -74,16 +116,44 @@ impl Prepared {
     }
 
     /// The tracer of the method, and under the limits, of `settings`: of the closest hits. The method's stages have to have
-    /// been built.
+    /// been built. In place of a method that needs a view it is that of [`Which::of_any_rays`].
     pub fn tracer(&self, settings: &Settings) -> Box<dyn Tracer + '_> {
-        any!(self, lowered => {
-            let views = Views::of(lowered);
-            match settings.method {
-                Which::Newton => tracer::<Newton, _>(views, settings),
-                Which::NewtonCoherent => tracer::<NewtonCoherent, _>(views, settings),
-                Which::Clipping => tracer::<Clipping, _>(views, settings),
-                Which::ClippingCoherent => tracer::<ClippingCoherent, _>(views, settings),
-            }
+        any!(self, lowered => rays_tracer(Views::of(lowered), settings))
+    }
+
+    /// Why the kernel cannot trace all of the picture's rays as those of one view, if it cannot. Needs no stages.
+    pub fn no_view(&self, picture: &camera::View) -> Option<String> {
+        any!(self, lowered => lowered.no_view(picture))
+    }
+
+    /// Takes the memory of a view of what was built.
+    ///
+    /// # Errors
+    /// As [`Lowered::take_view`].
+    pub fn take_view(&mut self, picture: &camera::View, settings: &Settings) -> Result<(), LowerError> {
+        let given = settings.limits.arena_bytes.unwrap_or(u64::MAX);
+        any!(self, lowered => lowered.take_view(picture, given))
+    }
+
+    /// The tracer of the picture's scan lines, under the limits and by the method of `settings`: of the closest hits. The
+    /// view's memory has to have been taken. With `others` it traces any other rays as well, as [`Prepared::tracer`] does.
+    ///
+    /// # Errors
+    /// As [`Lowered::seen`].
+    pub fn view_tracer(
+        &mut self,
+        picture: &camera::View,
+        settings: &Settings,
+        options: LineOptions,
+        others: bool,
+    ) -> Result<Box<dyn Tracer + '_>, LowerError> {
+        any!(self, lowered => match settings.method {
+            Which::Newton => view_tracer::<Newton, _>(lowered, picture, settings, options, others),
+            Which::NewtonCoherent => view_tracer::<NewtonCoherent, _>(lowered, picture, settings, options, others),
+            Which::Clipping => view_tracer::<Clipping, _>(lowered, picture, settings, options, others),
+            Which::ClippingCoherent => view_tracer::<ClippingCoherent, _>(lowered, picture, settings, options, others),
+            Which::NewtonPredicted => view_tracer::<NewtonPredicted, _>(lowered, picture, settings, options, others),
+            Which::ClippingPredicted => view_tracer::<ClippingPredicted, _>(lowered, picture, settings, options, others),
         })
     }
 
@@ -94,7 +164,7 @@ impl Prepared {
             match settings.method {
                 Which::Newton => Some(tracer::<AllHits<Newton>, _>(views, settings)),
                 Which::Clipping => Some(tracer::<AllHits<Clipping>, _>(views, settings)),
-                Which::NewtonCoherent | Which::ClippingCoherent => None,
+                _ => None,
             }
         })
     }
@@ -106,7 +176,7 @@ impl Prepared {
             match settings.method {
                 Which::Newton => Some(tracer::<AnyHit<Newton>, _>(views, settings)),
                 Which::Clipping => Some(tracer::<AnyHit<Clipping>, _>(views, settings)),
-                Which::NewtonCoherent | Which::ClippingCoherent => None,
+                _ => None,
             }
         })
     }
@@ -124,6 +194,16 @@ impl Prepared {
     /// The bytes that `stages` take of what was built, by kind.
     pub fn bytes(&self, stages: Stages) -> Bytes {
         any!(self, lowered => lowered.bytes(stages))
+    }
+
+    /// The bytes of the view that its part in `stages` takes, by kind.
+    pub fn view_bytes(&self, stages: Stages) -> Bytes {
+        any!(self, lowered => lowered.view_bytes(stages))
+    }
+
+    /// The most bytes that a thread can need for the scan lines of a view with a method.
+    pub fn most_view_lane_bytes(&self, method: Which) -> LaneBytes {
+        any!(self, lowered => most_lane_bytes_of(method, lowered))
     }
 
     /// Bytes of scratch that building the scene needs.

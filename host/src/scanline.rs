@@ -14,10 +14,14 @@ use patchray::method::Remembered;
 use patchray::point::Point;
 use patchray::ray::{Hit, Interval, RayError};
 use patchray::scalar::Scalar;
+use patchray::scene::Scene;
 
 use crate::lower::ORDER;
 use crate::method::{Answer, Coherence, Hits, Method, Stopped, Task, Views};
 use crate::scene::rays::RayLine;
+use crate::scene::sampling::ScanLine;
+
+pub mod view;
 
 /// A hit in `f64`, whatever it was computed in; exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,6 +93,16 @@ impl Tally {
         self.seconds += other.seconds;
     }
 
+    /// Counts what became of a ray.
+    fn count_outcome<H>(&mut self, outcome: &Outcome<H>) {
+        match outcome {
+            Outcome::Hit(_) => self.hits += 1,
+            Outcome::Miss => {}
+            Outcome::GaveUp { limit, .. } => *self.gave_up.entry(limit).or_default() += 1,
+            Outcome::Refused(_) | Outcome::Invalid => self.invalid += 1,
+        }
+    }
+
     /// Rays given up.
     pub fn gave_up_in_all(&self) -> u64 {
         self.gave_up.values().sum()
@@ -101,10 +115,12 @@ impl Tally {
 }
 
 /// Bytes that each thread needs beside the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LaneBytes {
     /// Coherence memory.
     pub coherence: u64,
+    /// What can be seen along a scan line, for the rays of a view.
+    pub line: u64,
     /// Scratch, for surfaces of any degrees.
     pub scratch: u64,
 }
@@ -114,6 +130,12 @@ pub trait Lane<H = Found>: Send {
     /// Traces `rays` one after another, as the beginning of a scan line, or as its continuation if `continues`. Outcomes are
     /// appended, one per ray; sums are added to `tally`.
     fn trace(&mut self, rays: &[RayLine], continues: bool, outcomes: &mut Vec<Outcome<H>>, tally: &mut Tally);
+
+    /// Traces a scan line of the picture that the tracer was made for: `rays` are those of `line`'s samples.
+    fn trace_line(&mut self, line: &ScanLine, rays: &[RayLine], outcomes: &mut Vec<Outcome<H>>, tally: &mut Tally) {
+        let _ = line;
+        self.trace(rays, false, outcomes, tally);
+    }
 }
 
 /// A scene ready to be traced with one method.
@@ -170,6 +192,7 @@ impl<M: Method<P>, P: Point> Tracer<Told<M, P>> for MethodTracer<'_, M, P> {
     fn lane_bytes(&self) -> LaneBytes {
         LaneBytes {
             coherence: (self.slots() * size_of::<Remembered<P::Scalar>>()) as u64,
+            line: 0,
             scratch: size_of::<M::Scratch>() as u64,
         }
     }
@@ -201,6 +224,43 @@ struct MethodLane<'t, M: Method<P>, P: Point> {
     found: Vec<Traced<M::Hits>>,
 }
 
+/// The counters of rays, one after another. A ray's are summed after the next ray: read at once, they would wait for the
+/// kernel's last stores.
+struct Counting<'s> {
+    sums: &'s mut [u64; Work::COUNT],
+    works: [Work; 2],
+    odd: bool,
+}
+
+impl<'s> Counting<'s> {
+    fn new(sums: &'s mut [u64; Work::COUNT]) -> Self {
+        Counting { sums, works: [Work::default(); 2], odd: false }
+    }
+
+    /// The counters of the next ray.
+    #[inline(always)]
+    fn next(&mut self) -> &mut Work {
+        self.odd = !self.odd;
+        let [even, odd] = &mut self.works;
+        let work = if self.odd { odd } else { even };
+        add(self.sums, work);
+        *work = Work::default();
+        work
+    }
+
+    /// Sums what is left.
+    fn end(self) {
+        self.works.iter().for_each(|work| add(self.sums, work));
+    }
+}
+
+#[inline(always)]
+fn add(sums: &mut [u64; Work::COUNT], work: &Work) {
+    for (sum, count) in sums.iter_mut().zip(work.counts()) {
+        *sum += u64::from(count);
+    }
+}
+
 /// Rays that are made ready and traced at a time: few enough for their numbers to stay in the nearest cache beside the
 /// scene's, enough for reading the clock around them not to count.
 const BLOCK: usize = 64;
@@ -216,13 +276,8 @@ impl<M: Method<P>, P: Point> Lane<Told<M, P>> for MethodLane<'_, M, P> {
             self.ready.extend(block.iter().map(ready));
             self.trace_ready(tally);
             for traced in self.found.drain(..) {
-                let outcome = outcome(&self.tracer.views, &mut self.basis, traced);
-                match &outcome {
-                    Outcome::Hit(_) => tally.hits += 1,
-                    Outcome::Miss => {}
-                    Outcome::GaveUp { limit, .. } => *tally.gave_up.entry(limit).or_default() += 1,
-                    Outcome::Refused(_) | Outcome::Invalid => tally.invalid += 1,
-                }
+                let outcome = outcome(&self.tracer.views.scene, &mut self.basis, traced);
+                tally.count_outcome(&outcome);
                 outcomes.push(outcome);
             }
         }
@@ -234,27 +289,17 @@ impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
     fn trace_ready(&mut self, tally: &mut Tally) {
         self.found.clear();
         let MethodTracer { views, limits, .. } = self.tracer;
-        // A ray's counters are summed after the next ray: read at once, they would wait for the kernel's last stores.
-        let mut works = [Work::default(); 2];
-        let mut sum = |work: &Work| {
-            for (sum, count) in tally.work.iter_mut().zip(work.counts()) {
-                *sum += u64::from(count);
-            }
-        };
         let begin = Instant::now();
-        self.found.extend(self.ready.iter().enumerate().map(|(number, ready)| {
-            let [even, odd] = &mut works;
-            let (work, previous) = if number % 2 == 0 { (even, odd) } else { (odd, even) };
-            let answer = ready.as_ref().map(|(origin, direction, interval)| {
+        let mut counting = Counting::new(&mut tally.work);
+        self.found.extend(self.ready.iter().map(|ready| {
+            let work = counting.next();
+            ready.as_ref().map(|(origin, direction, interval)| {
                 let ray = &views.scene.ray(*origin, *direction)?;
                 let coherence = Coherence { memory: &mut self.memory, line: self.line };
                 Ok(M::answer(views, coherence, &Task { ray, interval, limits }, &mut self.scratch, work))
-            });
-            sum(previous);
-            *previous = Work::default();
-            answer
+            })
         }));
-        works.iter().for_each(sum);
+        counting.end();
         tally.seconds += begin.elapsed().as_secs_f64();
     }
 
@@ -270,11 +315,11 @@ impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
 
 /// What became of a ray, in `f64` and with normals.
 fn outcome<H: Hits<P::Scalar>, P: Point>(
-    views: &Views<'_, P>,
+    scene: &Scene<'_, P>,
     basis: &mut Basis<P::Scalar, ORDER>,
     traced: Traced<H>,
 ) -> Outcome<H::Of<Found>> {
-    let mut told = |hits: H| hits.each(|hit| found(views, basis, hit));
+    let mut told = |hits: H| hits.each(|hit| found(scene, basis, hit));
     match traced {
         None => Outcome::Invalid,
         Some(Err(error)) => Outcome::Refused(error),
@@ -284,8 +329,8 @@ fn outcome<H: Hits<P::Scalar>, P: Point>(
     }
 }
 
-fn found<P: Point>(views: &Views<'_, P>, basis: &mut Basis<P::Scalar, ORDER>, hit: &Hit<P::Scalar>) -> Found {
-    let normal = views.scene.normal(hit, &mut basis.view());
+fn found<P: Point>(scene: &Scene<'_, P>, basis: &mut Basis<P::Scalar, ORDER>, hit: &Hit<P::Scalar>) -> Found {
+    let normal = scene.normal(hit, &mut basis.view());
     // A surface without a normal there has the zero vector. The basis is large enough for every degree.
     let normal = normal.ok().map(|normal| normal.map(|c| c.to_f64())).filter(|normal| *normal != [0.0; 3]);
     Found {

@@ -78,28 +78,51 @@ pub struct Stats {
     pub prepare_seconds: f64,
     /// Seconds for making rays and answering them, summed over threads.
     pub intersect_seconds: f64,
-    /// Bytes lent to the kernel for the scene, all threads sharing them.
+    /// Bytes lent to the kernel for the scene, and for a view of it, all threads sharing them.
     pub arena_bytes: u64,
     /// The same by kind of slot.
     pub arena_bytes_by_kind: Bytes,
     /// Bytes of coherence memory, for each thread.
     pub coherence_bytes_per_thread: u64,
+    /// Bytes of what can be seen along a scan line of a view, for each thread; 0 for rays of no view.
+    pub line_bytes_per_thread: u64,
     /// Bytes of scratch, for each thread.
     pub scratch_bytes_per_thread: u64,
 }
 
+/// What was made ready for a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Used {
+    /// Surfaces in the scene.
+    pub surfaces: u64,
+    /// Patches of all surfaces.
+    pub patches: u64,
+    /// Bytes lent to the kernel for the scene, and for a view of it, by kind.
+    pub bytes: Bytes,
+    /// Seconds that making it took.
+    pub prepare_seconds: f64,
+    /// What each thread takes.
+    pub lane: LaneBytes,
+}
+
+impl Used {
+    /// That of rays of no view.
+    pub fn of_rays(prepared: &Prepared, settings: &Settings, prepare_seconds: f64) -> Self {
+        Used {
+            surfaces: prepared.surfaces(),
+            patches: prepared.patches(),
+            bytes: prepared.bytes(Stages::of(settings.method)),
+            prepare_seconds,
+            lane: prepared.tracer(settings).lane_bytes(),
+        }
+    }
+}
+
 impl Stats {
-    /// The statistics of tracing `prepared` under `settings`, with `lane` what each thread took and `tally` the sums over
-    /// rays, which were asked for their closest hits.
-    pub fn new(
-        scene: String,
-        settings: &Settings,
-        prepared: &Prepared,
-        prepare_seconds: f64,
-        lane: LaneBytes,
-        tally: &Tally,
-    ) -> Self {
-        let bytes = prepared.bytes(Stages::of(settings.method));
+    /// The statistics of tracing what `used` says under `settings`, with `tally` the sums over rays, which were asked for
+    /// their closest hits.
+    pub fn new(scene: String, settings: &Settings, used: Used, tally: &Tally) -> Self {
+        let Used { surfaces, patches, bytes, prepare_seconds, lane } = used;
         Stats {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
@@ -112,8 +135,8 @@ impl Stats {
             asked: Asked::Closest,
             threads: settings.threads,
             settings: *settings,
-            surfaces: prepared.surfaces(),
-            patches: prepared.patches(),
+            surfaces,
+            patches,
             rays: tally.rays,
             hit_rays: tally.hits,
             gave_up: tally.gave_up_in_all(),
@@ -125,6 +148,7 @@ impl Stats {
             arena_bytes: bytes.total(),
             arena_bytes_by_kind: bytes,
             coherence_bytes_per_thread: lane.coherence,
+            line_bytes_per_thread: lane.line,
             scratch_bytes_per_thread: lane.scratch,
         }
     }

@@ -9,11 +9,10 @@ use clap::ValueEnum;
 use image::RgbImage;
 use indicatif::ProgressBar;
 use patchray_host::cmd::render::draw;
-use patchray_host::lower::Stages;
-use patchray_host::prepared::Prepared;
 use patchray_host::scene::teapot;
 use patchray_host::scene::trace::{Method, Precision};
 use patchray_host::settings::Settings;
+use patchray_host::viewed::{Viewed, Wishes};
 use std::path::Path;
 
 /// A channel may differ by this much: the last bits of t move a shade across a step of 1/255.
@@ -35,8 +34,10 @@ fn every_method_draws_the_recorded_picture() {
     for &method in Method::value_variants() {
         for precision in [Precision::F64, Precision::F32] {
             let settings = Settings { method, precision, ..Settings::default() };
-            let prepared = Prepared::build(&scene.model, Stages::of(method), &settings).expect("the teapot is valid");
-            let tracer = prepared.tracer(&settings);
+            let wishes = Wishes::of(&scene.appearance);
+            let mut viewed = Viewed::build(&scene.model, &settings, &view, wishes).expect("the teapot is valid");
+            assert!(viewed.has_view());
+            let (tracer, _) = viewed.tracer().expect("it was just made ready");
             let drawn = draw(tracer.as_ref(), &view, &scene.appearance, &ProgressBar::hidden());
             let mut png = Vec::new();
             drawn.picture.write_png(&mut png).expect("memory does not fail");

@@ -1,11 +1,13 @@
 //! The README's figures that a command can check.
 
+use clap::ValueEnum;
+use patchray_host::scene::trace::Method;
 use serde_json::Value;
 use std::process::Command;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
-/// The README's table of the kernel's memory says what `patchray info --json` says of the teapot.
+/// The README's tables of the kernel's memory say what `patchray info --json` says of the teapot.
 #[test]
 fn the_memory_table_is_what_info_says() {
     let info = info();
@@ -20,8 +22,21 @@ fn the_memory_table_is_what_info_says() {
             assert!(readme.contains(&row), "README.md has no row\n{row}");
             rows += 1;
         }
+        for method in Method::value_variants().iter().map(|method| method.name()) {
+            let of = &info["memory"][precision]["methods"][method]["view"];
+            let [scene, coherence, scratch, line] = [
+                "arena_bytes",
+                "coherence_bytes_per_thread",
+                "scratch_bytes_per_thread",
+                "line_bytes_per_thread_at_most",
+            ]
+            .map(|key| grouped(&of[key]));
+            let row = format!("| `{method}` | {precision} | {scene} | {coherence} | {scratch} | {line} |");
+            assert!(readme.contains(&row), "README.md has no row\n{row}");
+            rows += 1;
+        }
     }
-    assert_eq!(rows, 8);
+    assert_eq!(rows, 20);
 }
 
 /// Clipping alone fits where there is little memory: the teapot, and all that a thread needs for degrees up to 15 × 15.

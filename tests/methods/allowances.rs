@@ -45,10 +45,10 @@ pub(crate) struct Allowed {
 /// | clipping | f32 | 8 | grazes on silhouettes, which f64 sees pass the surface by; 7 and 7 are seen |
 pub(crate) fn in_common_view(adapter: &Adapter) -> u64 {
     match (adapter.method, adapter.precision) {
-        (Method::Newton | Method::NewtonCoherent, Precision::F64) => 12,
-        (Method::Newton | Method::NewtonCoherent, Precision::F32) => 20,
-        (Method::Clipping | Method::ClippingCoherent, Precision::F64) => 0,
-        (Method::Clipping | Method::ClippingCoherent, Precision::F32) => 8,
+        (Method::Newton | Method::NewtonCoherent | Method::NewtonPredicted, Precision::F64) => 12,
+        (Method::Newton | Method::NewtonCoherent | Method::NewtonPredicted, Precision::F32) => 20,
+        (Method::Clipping | Method::ClippingCoherent | Method::ClippingPredicted, Precision::F64) => 0,
+        (Method::Clipping | Method::ClippingCoherent | Method::ClippingPredicted, Precision::F32) => 8,
     }
 }
 
@@ -79,11 +79,11 @@ impl Allowed {
     pub(crate) fn of(adapter: &Adapter, case: &Case) -> Allowed {
         let rate = |per_million: f64| Rate { per_million, at_least: per_million / 50.0 };
         let (lost, unanswered) = match (adapter.method, adapter.precision) {
-            (Method::Newton | Method::NewtonCoherent, Precision::F64) => (50.0, 0.0),
-            (Method::Newton | Method::NewtonCoherent, Precision::F32) => (100.0, 0.0),
+            (Method::Newton | Method::NewtonCoherent | Method::NewtonPredicted, Precision::F64) => (50.0, 0.0),
+            (Method::Newton | Method::NewtonCoherent | Method::NewtonPredicted, Precision::F32) => (100.0, 0.0),
             (Method::Clipping, Precision::F64) => (0.0, 0.0),
-            (Method::ClippingCoherent, Precision::F64) => (50.0, 50.0),
-            (Method::Clipping | Method::ClippingCoherent, Precision::F32) => (100.0, 50.0),
+            (Method::ClippingCoherent | Method::ClippingPredicted, Precision::F64) => (50.0, 50.0),
+            (Method::Clipping | Method::ClippingCoherent | Method::ClippingPredicted, Precision::F32) => (100.0, 50.0),
         };
         let (residual, least_margin, unjudged) = match adapter.precision {
             Precision::F64 => (1e-12, 1e-12, 0.001),
@@ -91,7 +91,7 @@ impl Allowed {
         };
         let usual = Allowed { lost: rate(lost), unanswered: rate(unanswered), residual, least_margin, unjudged };
         match (adapter.method, adapter.precision, case.name) {
-            (Method::Newton | Method::NewtonCoherent, ..) => usual,
+            (Method::Newton | Method::NewtonCoherent | Method::NewtonPredicted, ..) => usual,
             (_, Precision::F64, "flat disc" | "flat bicubic") => Allowed { unanswered: rate(300.0), ..usual },
             (_, Precision::F64, _) => usual,
             (_, Precision::F32, "flat disc" | "flat bicubic") => {

@@ -14,11 +14,10 @@ use serde::Serialize;
 use super::render::{Drawn, draw, row};
 use super::{Failure, StatsOutputs, check_outputs, pool, progress};
 use crate::judge::{Agreement, Truth, allowance};
-use crate::lower::Stages;
 use crate::oracle::Oracle;
 use crate::output::{Output, OutputError};
 use crate::picture::Picture;
-use crate::prepared::Prepared;
+use crate::scanline::Tracer;
 use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
 use crate::scene::file::Scene;
@@ -26,7 +25,8 @@ use crate::scene::model::Model;
 use crate::scene::teapot::common_scene;
 use crate::scene::trace::{Method, Precision};
 use crate::settings::{Flags, Settings, SizeFlag};
-use crate::stats::{SCHEMA, Stats};
+use crate::stats::{SCHEMA, Stats, Used};
+use crate::viewed::{Viewed, Wishes};
 
 /// The command line without a verb.
 #[derive(Args, Clone, Debug)]
@@ -131,18 +131,16 @@ fn compare(
     (truths, oracle): (&[Truth], &OracleStats),
     quiet: bool,
 ) -> Result<(Vec<Run>, Option<Picture>), Failure> {
-    let mut ready = Vec::new();
-    for settings in settings {
-        let begin = Instant::now();
-        let prepared = Prepared::build(model, Stages::of(settings.method), settings)?;
-        ready.push((settings, prepared, begin.elapsed().as_secs_f64()));
-    }
+    // Methods are compared at their fastest.
+    let wishes = Wishes { patches: true, ..Wishes::of(appearance) };
+    let viewed = settings.iter().map(|settings| Viewed::build(model, settings, view, wishes));
+    let mut viewed = viewed.collect::<Result<Vec<_>, _>>()?;
+    let tracers = viewed.iter_mut().map(Viewed::tracer).collect::<Result<Vec<_>, _>>()?;
     let bar = progress((PASSES * settings.len()) as u64 * u64::from(view.size[1]), "drawing", quiet);
     let passes = (0..PASSES).map(|_| {
-        let draw = |(settings, prepared, _): &(&Settings, Prepared, f64)| {
-            pool.install(|| draw(prepared.tracer(settings).as_ref(), view, appearance, &bar))
-        };
-        ready.iter().map(draw).collect::<Vec<Drawn>>()
+        let draw =
+            |(tracer, _): &(Box<dyn Tracer + '_>, Used)| pool.install(|| draw(tracer.as_ref(), view, appearance, &bar));
+        tracers.iter().map(draw).collect::<Vec<Drawn>>()
     });
     let fastest = passes.reduce(|mut fastest, pass| {
         for (best, drawn) in fastest.iter_mut().zip(pass) {
@@ -154,15 +152,14 @@ fn compare(
     let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());
     let mut runs = Vec::new();
     let mut picture = None;
-    for ((settings, prepared, prepare_seconds), drawn) in ready.iter().zip(fastest.unwrap_or_default()) {
+    for ((settings, (_, used)), drawn) in settings.iter().zip(tracers).zip(fastest.unwrap_or_default()) {
         let mut agreement = Agreement::default();
         let allowance = allowance(settings.precision);
         let directions = (0..view.size[1]).flat_map(|py| row(view, py)).map(|ray| ray.direction);
         for ((outcome, truth), direction) in drawn.outcomes.iter().zip(truths).zip(directions) {
             agreement.add(outcome, truth, direction, diagonal, &allowance);
         }
-        let (scene, lane) = ("teapot".to_owned(), prepared.tracer(settings).lane_bytes());
-        let mut stats = Stats::new(scene, settings, prepared, *prepare_seconds, lane, &drawn.tally);
+        let mut stats = Stats::new("teapot".to_owned(), settings, used, &drawn.tally);
         stats.size = Some(view.size);
         stats.samples = Some(view.sampling);
         let ns_per_ray = stats.intersect_seconds / stats.rays.max(1) as f64 * 1e9;
@@ -237,7 +234,7 @@ impl Report {
             let _ = writeln!(text, "{args}");
         };
         line(format_args!(
-            "{:<18}{:<10}{:>8}{:>9}{:>13}{:>8}{:>7}{:>8}{:>9}{:>10}{:>10}",
+            "{:<20}{:<10}{:>8}{:>9}{:>13}{:>8}{:>7}{:>8}{:>9}{:>10}{:>10}",
             "method",
             "precision",
             "time s",
@@ -257,7 +254,7 @@ impl Report {
             let points = stats.work.get("intersection_points").copied().unwrap_or(0);
             let Agreement { wrong, missed, phantom, undecided, .. } = agreement;
             line(format_args!(
-                "{:<18}{:<10}{:>8.3}{ns_per_ray:>9.0}{points:>13}{:>8}{wrong:>7}{missed:>8}{phantom:>9}{undecided:>10}\
+                "{:<20}{:<10}{:>8.3}{ns_per_ray:>9.0}{points:>13}{:>8}{wrong:>7}{missed:>8}{phantom:>9}{undecided:>10}\
                  {times_oracle:>10.0}",
                 name(stats.method.to_possible_value()),
                 name(stats.precision.to_possible_value()),
@@ -267,7 +264,7 @@ impl Report {
         }
         let OracleStats { rays, hit_rays, roots, open, seconds } = self.oracle;
         line(format_args!(
-            "{:<18}{:<10}{seconds:>8.3}{:>9.0}{roots:>13}{hit_rays:>8}{:>7}{:>8}{:>9}{open:>10}{:>10}",
+            "{:<20}{:<10}{seconds:>8.3}{:>9.0}{roots:>13}{hit_rays:>8}{:>7}{:>8}{:>9}{open:>10}{:>10}",
             "oracle",
             "f64",
             seconds / rays.max(1) as f64 * 1e9,

@@ -6,7 +6,9 @@
 //! `polygons`, the number of a scene's; `control_box` (`min`, `max`; `null` without surfaces), `diagonal`, `flatness` and
 //! `grid_density` (the ones in effect), and `memory`: for each precision `patches` and `preparation_scratch_bytes` (while the
 //! scene is built), and under `methods` for each method `arena_bytes` (lent for the scene), `arena_bytes_by_kind`,
-//! `coherence_bytes_per_thread`, `scratch_bytes_per_thread`. A precision that cannot hold the model has `refused`, the
+//! `coherence_bytes_per_thread`, `scratch_bytes_per_thread`, all for rays of any kind and not there for a method that needs
+//! those of a view; and `view`, with the same fields and `line_bytes_per_thread_at_most`, for the rays of one view: of a
+//! picture, `--stats` says how many bytes its scan lines take. A precision that cannot hold the model has `refused`, the
 //! reason, instead. All bytes are sizes of slots times their number.
 
 use std::collections::BTreeMap;
@@ -23,6 +25,9 @@ use crate::lower::{LowerError, Stages};
 use crate::memory::Bytes;
 use crate::output::Output;
 use crate::prepared::Prepared;
+use crate::scanline::LaneBytes;
+use crate::scene::camera::{Camera, View};
+use crate::scene::model::Model;
 use crate::scene::spline::SplineSummary;
 use crate::scene::trace::{Method, Precision};
 use crate::settings::{Flags, Settings};
@@ -89,10 +94,37 @@ enum Memory {
 
 #[derive(Clone, Debug, Serialize)]
 struct MethodMemory {
+    #[serde(flatten)]
+    rays: Option<RaysMemory>,
+    view: Option<ViewMemory>,
+}
+
+/// For rays of any kind.
+#[derive(Clone, Debug, Serialize)]
+struct RaysMemory {
     arena_bytes: u64,
     arena_bytes_by_kind: Bytes,
     coherence_bytes_per_thread: u64,
     scratch_bytes_per_thread: u64,
+}
+
+/// For the rays of one view.
+#[derive(Clone, Debug, Serialize)]
+struct ViewMemory {
+    #[serde(flatten)]
+    rays: RaysMemory,
+    line_bytes_per_thread_at_most: u64,
+}
+
+impl RaysMemory {
+    fn of(bytes: Bytes, lane: &LaneBytes) -> Self {
+        RaysMemory {
+            arena_bytes: bytes.total(),
+            arena_bytes_by_kind: bytes,
+            coherence_bytes_per_thread: lane.coherence,
+            scratch_bytes_per_thread: lane.scratch,
+        }
+    }
 }
 
 /// Prints what the file holds.
@@ -222,15 +254,24 @@ impl Info {
                 }
             };
             line(format_args!("\n{precision}: {patches} patches; scratch while building {preparation} bytes"));
-            for (method, memory) in methods {
-                line(format_args!("  {method}: {} bytes for the scene", memory.arena_bytes));
-                for (kind, bytes) in memory.arena_bytes_by_kind.iter() {
-                    line(format_args!("    {:<18}{bytes:>12}", kind.name()));
+            for (method, MethodMemory { rays, view }) in methods {
+                let mut part = |what: &str, rays: &RaysMemory, most: Option<u64>| {
+                    line(format_args!("  {method}{what}: {} bytes for the scene", rays.arena_bytes));
+                    for (kind, bytes) in rays.arena_bytes_by_kind.iter() {
+                        line(format_args!("    {:<18}{bytes:>12}", kind.name()));
+                    }
+                    let most = most.map_or(String::new(), |most| format!(", a scan line at most {most}"));
+                    line(format_args!(
+                        "    for each thread: coherence {}, scratch {}{most}",
+                        rays.coherence_bytes_per_thread, rays.scratch_bytes_per_thread
+                    ));
+                };
+                if let Some(rays) = rays {
+                    part("", rays, None);
                 }
-                line(format_args!(
-                    "    for each thread: coherence {}, scratch {}",
-                    memory.coherence_bytes_per_thread, memory.scratch_bytes_per_thread
-                ));
+                if let Some(ViewMemory { rays, line_bytes_per_thread_at_most }) = view {
+                    part(", rays of a view", rays, Some(*line_bytes_per_thread_at_most));
+                }
             }
         }
         text
@@ -240,28 +281,47 @@ impl Info {
 impl Memory {
     /// The memory of every method in the precision of `settings`.
     fn of(loaded: &Loaded, settings: &Settings) -> Result<Self, LowerError> {
-        let prepared = match Prepared::build(&loaded.model, Stages::ALL, settings) {
+        let mut prepared = match Prepared::build(&loaded.model, Stages::ALL, settings) {
             Ok(prepared) => prepared,
             Err(error @ (LowerError::Surface { .. } | LowerError::Vanishes { .. })) => {
                 return Ok(Memory::Refused { refused: error.to_string() });
             }
             Err(error) => return Err(error),
         };
-        let methods = Method::value_variants().iter().map(|method| {
-            let bytes = prepared.bytes(Stages::of(*method));
-            let lane = prepared.tracer(&Settings { method: *method, ..*settings }).lane_bytes();
-            let memory = MethodMemory {
-                arena_bytes: bytes.total(),
-                arena_bytes_by_kind: bytes,
-                coherence_bytes_per_thread: lane.coherence,
-                scratch_bytes_per_thread: lane.scratch,
-            };
-            (name(method), memory)
+        // What a view takes does not depend on where it looks from.
+        let picture = loaded.scene.as_ref().map(|(description, _)| description.camera.view(description.image.size));
+        let picture = picture.unwrap_or_else(|| from_within(&loaded.model));
+        let has_view = prepared.no_view(&picture).is_none();
+        if has_view {
+            prepared.take_view(&picture, settings)?;
+        }
+        let methods = Method::value_variants().iter().map(|&method| {
+            let settings = Settings { method, ..*settings };
+            let rays = (!method.needs_view())
+                .then(|| RaysMemory::of(prepared.bytes(Stages::of(method)), &prepared.tracer(&settings).lane_bytes()));
+            let stages = Stages::of_view(method);
+            let view = has_view.then(|| {
+                let lane = prepared.most_view_lane_bytes(method);
+                let mut bytes = prepared.bytes(stages);
+                bytes.add_all(&prepared.view_bytes(stages));
+                ViewMemory { rays: RaysMemory::of(bytes, &lane), line_bytes_per_thread_at_most: lane.line }
+            });
+            (name(&method), MethodMemory { rays, view })
         });
+        let methods = methods.collect();
         Ok(Memory::Needed {
             patches: prepared.patches(),
             preparation_scratch_bytes: prepared.preparation_bytes(),
-            methods: methods.collect(),
+            methods,
         })
     }
+}
+
+/// A picture from the middle of the model.
+fn from_within(model: &Model) -> View {
+    let (eye, size) = model.control_box().map_or(([0.0; 3], 1.0), |bounds| {
+        ([0, 1, 2].map(|k| 0.5 * (bounds.min[k] + bounds.max[k])), bounds.diagonal())
+    });
+    let axis = |k: usize| [0, 1, 2].map(|other| if other == k { size } else { 0.0 });
+    Camera::Vectors { eye, forward: axis(0), right: axis(1), up: axis(2) }.view([1, 1])
 }

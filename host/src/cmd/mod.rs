@@ -68,7 +68,7 @@ impl Failure {
         match self {
             Failure::Usage { .. } => 2,
             Failure::Input(_) | Failure::Refused { .. } => 3,
-            Failure::Lower(LowerError::Surface { .. } | LowerError::Vanishes { .. }) => 3,
+            Failure::Lower(LowerError::Surface { .. } | LowerError::Vanishes { .. } | LowerError::NoView { .. }) => 3,
             Failure::Lower(LowerError::Internal(_)) => 5,
             Failure::Lower(_) => 4,
             Failure::Output(error) if error.is_broken_pipe() => 0,

@@ -14,9 +14,9 @@ use crate::output::{Output, OutputError};
 use crate::report::answers::{self, Answer, Answers};
 use crate::scanline::{Found, LaneBytes, Outcome, Tally, Tracer};
 use crate::scene::rays::{RayBatch, Rays};
-use crate::scene::trace::Precision;
+use crate::scene::trace::{Method, Precision};
 use crate::settings::{Flags, Settings};
-use crate::stats::{Asked, Stats};
+use crate::stats::{Asked, Stats, Used};
 
 /// The command line of `query`.
 #[derive(Args, Clone, Debug)]
@@ -84,6 +84,9 @@ pub fn run(args: &QueryArgs) -> Result<(), Failure> {
     check_outputs(Some(output), &[patches, rays], flags)?;
     let loaded = load::scene_or_patches(patches, flags)?;
     let settings = &loaded.settings;
+    if settings.method.needs_view() {
+        return Err(only_views(settings.method));
+    }
     let reader = Rays::open(rays, flags.on_invalid())?;
     let mut out = Output::create(output)?;
     let stats_outputs = StatsOutputs::create(flags)?;
@@ -104,7 +107,8 @@ pub fn run(args: &QueryArgs) -> Result<(), Failure> {
         }
     };
     let Done { tally, lane, last } = &done;
-    let mut stats = Stats::new(patches.display().to_string(), settings, &prepared, prepare_seconds, *lane, tally);
+    let used = Used::of_rays(&prepared, settings, prepare_seconds);
+    let mut stats = Stats::new(patches.display().to_string(), settings, Used { lane: *lane, ..used }, tally);
     stats.asked = asked;
     stats.ray_file = Some(rays.display().to_string());
     out.finish()?;
@@ -117,6 +121,18 @@ pub fn run(args: &QueryArgs) -> Result<(), Failure> {
         say(format_args!("{}", summary(&stats)));
     }
     Ok(())
+}
+
+/// The failure for asking a method of views for the rays of a file.
+fn only_views(method: Method) -> Failure {
+    let (name, instead) = (method.name(), method.of_any_rays().name());
+    Failure::Usage {
+        message: format!("`{name}` traces the rays of one view alone, and a ray file may hold any"),
+        help: format!(
+            "it predicts from what all rays from one eye share; use --method {instead}, or a method without coherence, here, \
+             and {name} with `render`"
+        ),
+    }
 }
 
 /// The failure for asking a coherent method for more than it looks for.

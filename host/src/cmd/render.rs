@@ -15,10 +15,11 @@ use crate::scanline::{Outcome, Tally, Tracer};
 use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
 use crate::scene::rays::RayLine;
-use crate::scene::sampling::Sampling;
+use crate::scene::sampling::{Sampling, ScanLine};
 use crate::settings::{Flags, SizeFlag};
 use crate::shade::painter::{Colour, Painter};
 use crate::stats::Stats;
+use crate::viewed::{Viewed, Wishes};
 
 /// The command line of `render`.
 #[derive(Args, Clone, Debug)]
@@ -55,19 +56,18 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     };
     let mut png = Output::create(output)?;
     let stats_outputs = StatsOutputs::create(flags)?;
-    let (prepared, prepare_seconds) = loaded.prepare()?;
     let settings = &loaded.settings;
-    let tracer = prepared.tracer(settings);
-
     let size = size.size.unwrap_or(description.image.size);
     let view = description.camera.view(size).sampled(samples.unwrap_or(description.image.samples));
+    let mut viewed = Viewed::build(&loaded.model, settings, &view, Wishes::of(appearance))?;
+    let (tracer, used) = viewed.tracer()?;
+
     let bar = progress(u64::from(size[1]), "rendering", flags.quiet);
     let drawn = pool(settings.threads)?.install(|| draw(tracer.as_ref(), &view, appearance, &bar));
     bar.finish_and_clear();
     refuse_pixels(&drawn, &view, scene, &loaded)?;
 
-    let (scene, lane) = (scene.display().to_string(), tracer.lane_bytes());
-    let mut stats = Stats::new(scene, settings, &prepared, prepare_seconds, lane, &drawn.tally);
+    let mut stats = Stats::new(scene.display().to_string(), settings, used, &drawn.tally);
     stats.size = Some(size);
     stats.samples = Some(view.sampling);
     drawn.picture.write_png(&mut png).map_err(|reason| png.failed(reason))?;
@@ -93,7 +93,12 @@ pub struct Drawn {
 
 /// The rays of scan line `line`: of a row of pixels where each has one sample, else of half of it.
 pub fn row(view: &View, line: u32) -> Vec<RayLine> {
-    let ray = |sample| RayLine {
+    rays(view, line, &view.scan_line(line))
+}
+
+/// The rays of the samples of scan line `line`.
+pub fn rays(view: &View, line: u32, samples: &ScanLine) -> Vec<RayLine> {
+    let ray = |&sample| RayLine {
         origin: view.eye,
         direction: view.towards(sample),
         t_min: 0.0,
@@ -101,7 +106,7 @@ pub fn row(view: &View, line: u32) -> Vec<RayLine> {
         scan_line: u64::from(line),
         valid: true,
     };
-    view.scan_line(line).samples.into_iter().map(ray).collect()
+    samples.samples.iter().map(ray).collect()
 }
 
 /// Draws a view, a row of pixels a job, on rayon's current threads. The result does not depend on their number.
@@ -116,9 +121,10 @@ pub fn draw(tracer: &dyn Tracer, view: &View, appearance: &Appearance, bar: &Pro
             let mut lines = Vec::new();
             lanes.with(|lane| {
                 for line in side * py..side * (py + 1) {
-                    let rays = row(view, line);
+                    let samples = view.scan_line(line);
+                    let rays = rays(view, line, &samples);
                     let mut outcomes = Vec::with_capacity(rays.len());
-                    lane.trace(&rays, false, &mut outcomes, &mut tally);
+                    lane.trace_line(&samples, &rays, &mut outcomes, &mut tally);
                     lines.push(painter.paint(lane, &rays, &outcomes));
                     all.extend(outcomes);
                 }

@@ -22,6 +22,10 @@ pub enum Method {
     Clipping,
     /// Bézier clipping around the previous ray's hit first, verified by a testing ray through patches in a grid.
     ClippingCoherent,
+    /// Newton's iteration from where the hit is predicted, verified by one testing ray; for the rays of one view alone.
+    NewtonPredicted,
+    /// Bézier clipping around where the hit is predicted, verified by one testing ray; for the rays of one view alone.
+    ClippingPredicted,
 }
 
 impl Method {
@@ -29,7 +33,35 @@ impl Method {
     pub fn is_coherent(self) -> bool {
         match self {
             Method::Newton | Method::Clipping => false,
-            Method::NewtonCoherent | Method::ClippingCoherent => true,
+            Method::NewtonCoherent | Method::ClippingCoherent | Method::NewtonPredicted | Method::ClippingPredicted => {
+                true
+            }
+        }
+    }
+
+    /// Whether it traces nothing but the rays of one view.
+    pub fn needs_view(self) -> bool {
+        matches!(self, Method::NewtonPredicted | Method::ClippingPredicted)
+    }
+
+    /// The method that traces rays of no view in its place, such as those that mirrors send on: itself if it can.
+    pub fn of_any_rays(self) -> Self {
+        match self {
+            Method::NewtonPredicted => Method::NewtonCoherent,
+            Method::ClippingPredicted => Method::ClippingCoherent,
+            other => other,
+        }
+    }
+
+    /// Its name, as files and the command line have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Newton => "newton",
+            Method::NewtonCoherent => "newton-coherent",
+            Method::Clipping => "clipping",
+            Method::ClippingCoherent => "clipping-coherent",
+            Method::NewtonPredicted => "newton-predicted",
+            Method::ClippingPredicted => "clipping-predicted",
         }
     }
 }

@@ -109,6 +109,9 @@ fn ray_file() -> String {
 
 const METHODS: [&str; 4] = ["newton", "newton-coherent", "clipping", "clipping-coherent"];
 
+/// Those for the rays of one view alone.
+const PREDICTED: [&str; 2] = ["newton-predicted", "clipping-predicted"];
+
 const TEAPOT: &str = "teapot.bpt rays.csv --flatness 0.002";
 
 #[test]
@@ -301,15 +304,25 @@ fn info_says_what_stats_report() {
     assert_eq!(info["control_box"]["max"], serde_json::json!([3.525, 2.0, 3.15]));
     for precision in ["f32", "f64"] {
         let memory = &info["memory"][precision];
-        for method in METHODS {
-            folder.done(&format!(
-                "render scene.toml -o o.png --size 4x4 --stats s.json --method {method} --precision {precision}"
-            ));
+        let fields = ["arena_bytes", "arena_bytes_by_kind", "coherence_bytes_per_thread", "scratch_bytes_per_thread"];
+        for method in METHODS.into_iter().chain(PREDICTED) {
+            let flags = format!("--stats s.json --method {method} --precision {precision}");
+            folder.done(&format!("render scene.toml -o o.png --size 4x4 {flags}"));
             let stats = folder.json("s.json");
             assert_eq!(stats["patches"], if method == "clipping" { 0.into() } else { memory["patches"].clone() });
-            for field in
-                ["arena_bytes", "arena_bytes_by_kind", "coherence_bytes_per_thread", "scratch_bytes_per_thread"]
-            {
+            let view = &memory["methods"][method]["view"];
+            for field in fields {
+                assert_eq!(view[field], stats[field], "{precision} {method} {field}");
+            }
+            let most = view["line_bytes_per_thread_at_most"].as_u64().expect("bytes");
+            assert!((1..=most).contains(&stats["line_bytes_per_thread"].as_u64().expect("bytes")), "{method}");
+            if PREDICTED.contains(&method) {
+                assert!(memory["methods"][method].get("arena_bytes").is_none());
+                continue;
+            }
+            folder.done(&format!("query {TEAPOT} -o out.csv {flags}"));
+            let stats = folder.json("s.json");
+            for field in fields {
                 assert_eq!(memory["methods"][method][field], stats[field], "{precision} {method} {field}");
             }
         }
@@ -321,13 +334,40 @@ fn info_says_what_stats_report() {
 }
 
 #[test]
+fn predicted_methods_ask_for_a_view() {
+    let folder = Folder::new();
+    folder.put(
+        "far.toml",
+        "surfaces = [{ file = \"teapot.bpt\" }]\ncamera = { eye = [0, -500, 1.5], look_at = [0, 0, 1.5], fov = 1 }\n",
+    );
+    folder.put(
+        "mirror.toml",
+        "surfaces = [{ file = \"teapot.bpt\", material = \"mirror\" }]\nmaterials.mirror = { reflect = 0.5 }\n\
+         camera = { eye = [0, -9, 3], look_at = [0, 0, 1.5] }\n",
+    );
+    for method in PREDICTED {
+        folder.fails(&format!("query {TEAPOT} -o out.csv --method {method}"), 2, &["one view", "--method"]);
+        folder.fails(
+            &format!("render far.toml -o o.png --size 8x8 --method {method}"),
+            3,
+            &["eight times", "--method"],
+        );
+        // What mirrors send on is traced by the method that can.
+        folder.done(&format!("render mirror.toml -o o.png --size 24x24 --stats s.json --method {method}"));
+        assert!(folder.json("s.json")["arena_bytes_by_kind"].get("grid_voxels").is_some());
+    }
+    folder.done("render far.toml -o o.png --size 8x8 --stats s.json --method newton");
+    assert_eq!(folder.json("s.json")["line_bytes_per_thread"], 0);
+}
+
+#[test]
 fn without_a_verb_the_teapot_is_compared_with_the_oracle() {
     let folder = Folder::new();
     let output = folder.done("--size 48x48 --quiet");
     let table = printed(&output);
     assert!(table.contains("Picture: target/teapot.png"), "{table}");
     assert!(folder.path("target/teapot.png").is_file());
-    for row in table.lines().skip(1).take(8) {
+    for row in table.lines().skip(1).take(12) {
         let words: Vec<_> = row.split_whitespace().collect();
         let judged: u64 = words[6..10].iter().map(|word| word.parse::<u64>().expect("a count")).sum();
         assert!(judged <= 2, "{table}");
