@@ -1,9 +1,14 @@
 //! What the oracle says of a method's answers, ray by ray.
 
+use std::time::Instant;
+
+use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::oracle::Verdict;
-use crate::scanline::{Found, Outcome};
+use crate::oracle::{Oracle, Verdict};
+use crate::scanline::{Found, Outcome, row};
+use crate::scene::camera::View;
+use crate::scene::rays::RayLine;
 use crate::scene::trace::Precision;
 
 /// How far a right answer may be off along the ray, as shares of the model's diagonal.
@@ -54,6 +59,46 @@ impl From<&Verdict> for Truth {
     }
 }
 
+/// What the oracle found in a picture.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OracleStats {
+    /// Rays.
+    pub rays: u64,
+    /// Rays that hit.
+    pub hit_rays: u64,
+    /// Roots of all rays.
+    pub roots: u64,
+    /// Rays whose answer the oracle leaves open.
+    pub open: u64,
+    /// Summed over threads.
+    pub seconds: f64,
+}
+
+/// What the oracle says of each of the picture's rays, on rayon's current threads; `step` is called as often as it has scan
+/// lines.
+pub fn ask(oracle: &Oracle, picture: &View, step: impl Fn() + Sync) -> (Vec<Truth>, OracleStats) {
+    let lines: Vec<(Vec<Truth>, f64)> = (0..picture.scan_lines())
+        .into_par_iter()
+        .map(|line| {
+            let begin = Instant::now();
+            let truth = |ray: &RayLine| Truth::from(&oracle.trace(ray.origin, ray.direction, ray.t_min, ray.t_max));
+            let truths = row(picture, line).iter().map(truth).collect();
+            step();
+            (truths, begin.elapsed().as_secs_f64())
+        })
+        .collect();
+    let seconds = lines.iter().map(|(_, seconds)| seconds).sum();
+    let truths: Vec<Truth> = lines.into_iter().flat_map(|(truths, _)| truths).collect();
+    let stats = OracleStats {
+        rays: truths.len() as u64,
+        hit_rays: truths.iter().filter(|truth| truth.closest.is_some()).count() as u64,
+        roots: truths.iter().map(|truth| truth.roots as u64).sum(),
+        open: truths.iter().filter(|truth| truth.open).count() as u64,
+        seconds,
+    };
+    (truths, stats)
+}
+
 /// How often a method agreed with the oracle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Agreement {
@@ -72,6 +117,16 @@ pub struct Agreement {
 }
 
 impl Agreement {
+    /// The agreement over a picture, ray by ray.
+    pub fn of(outcomes: &[Outcome], truths: &[Truth], picture: &View, diagonal: f64, precision: Precision) -> Self {
+        let (mut agreement, allowance) = (Agreement::default(), allowance(precision));
+        let directions = (0..picture.scan_lines()).flat_map(|line| row(picture, line)).map(|ray| ray.direction);
+        for ((outcome, truth), direction) in outcomes.iter().zip(truths).zip(directions) {
+            agreement.add(outcome, truth, direction, diagonal, &allowance);
+        }
+        agreement
+    }
+
     /// Adds the answer to the ray of this `direction`; `diagonal` is the model's.
     pub fn add(&mut self, outcome: &Outcome, truth: &Truth, direction: [f64; 3], diagonal: f64, allowance: &Allowance) {
         let count = match (outcome, truth.closest) {

@@ -3,6 +3,7 @@ pub mod batch;
 pub mod cmd;
 pub mod judge;
 pub mod lower;
+pub mod measure;
 pub mod memory;
 pub mod method;
 pub mod number;

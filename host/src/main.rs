@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
-use patchray_host::cmd::{Failure, demo, info, query, render};
+use patchray_host::cmd::{Failure, demo, info, query, render, tables};
 
 /// Traces rays against Bézier surfaces themselves, without tessellation.
 ///
@@ -29,6 +29,8 @@ enum Verb {
     Query(query::QueryArgs),
     /// Say what a file holds, and the memory that each method needs for it
     Info(info::InfoArgs),
+    /// Measure the paper's tables on its four scenes, with the paper's figures beside ours
+    Tables(tables::TablesArgs),
 }
 
 fn main() -> ExitCode {
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
         Some(Verb::Render(args)) => render::run(args),
         Some(Verb::Query(args)) => query::run(args),
         Some(Verb::Info(args)) => info::run(args),
+        Some(Verb::Tables(args)) => tables::run(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -18,6 +18,7 @@ use patchray::scene::Scene;
 
 use crate::lower::ORDER;
 use crate::method::{Answer, Coherence, Hits, Method, Stopped, Task, Views};
+use crate::scene::camera::View;
 use crate::scene::rays::RayLine;
 use crate::scene::sampling::ScanLine;
 
@@ -76,6 +77,8 @@ pub struct Tally {
     /// Seconds for making rays and answering them, summed over threads. Measured around whole lines; the
     /// conversion of numbers and the normals are outside.
     pub seconds: f64,
+    /// The intersection points of each ray, in order: only if there is a list for them when rays are traced.
+    pub points: Option<Vec<u32>>,
 }
 
 impl Tally {
@@ -91,6 +94,9 @@ impl Tally {
             *sum += part;
         }
         self.seconds += other.seconds;
+        if let (Some(points), Some(others)) = (&mut self.points, &other.points) {
+            points.extend(others);
+        }
     }
 
     /// Counts what became of a ray.
@@ -112,6 +118,24 @@ impl Tally {
     pub fn count(&self, name: &str) -> u64 {
         Work::NAMES.iter().zip(self.work).find_map(|(&known, count)| (known == name).then_some(count)).unwrap_or(0)
     }
+}
+
+/// The rays of scan line `line`: of a row of pixels where each has one sample, else of half of it.
+pub fn row(view: &View, line: u32) -> Vec<RayLine> {
+    rays_of(view, line, &view.scan_line(line))
+}
+
+/// The rays of the samples of scan line `line`.
+pub fn rays_of(view: &View, line: u32, samples: &ScanLine) -> Vec<RayLine> {
+    let ray = |&sample| RayLine {
+        origin: view.eye,
+        direction: view.towards(sample),
+        t_min: 0.0,
+        t_max: f64::INFINITY,
+        scan_line: u64::from(line),
+        valid: true,
+    };
+    samples.samples.iter().map(ray).collect()
 }
 
 /// Bytes that each thread needs beside the scene.
@@ -228,36 +252,43 @@ struct MethodLane<'t, M: Method<P>, P: Point> {
 /// kernel's last stores.
 struct Counting<'s> {
     sums: &'s mut [u64; Work::COUNT],
+    points: Option<&'s mut Vec<u32>>,
     works: [Work; 2],
-    odd: bool,
+    rays: usize,
 }
 
 impl<'s> Counting<'s> {
-    fn new(sums: &'s mut [u64; Work::COUNT]) -> Self {
-        Counting { sums, works: [Work::default(); 2], odd: false }
+    fn new(tally: &'s mut Tally) -> Self {
+        Counting { sums: &mut tally.work, points: tally.points.as_mut(), works: [Work::default(); 2], rays: 0 }
     }
 
     /// The counters of the next ray.
     #[inline(always)]
     fn next(&mut self) -> &mut Work {
-        self.odd = !self.odd;
-        let [even, odd] = &mut self.works;
-        let work = if self.odd { odd } else { even };
-        add(self.sums, work);
+        let work = &mut self.works[self.rays & 1];
+        if self.rays >= 2 {
+            add(self.sums, &mut self.points, work);
+        }
+        self.rays += 1;
         *work = Work::default();
         work
     }
 
     /// Sums what is left.
-    fn end(self) {
-        self.works.iter().for_each(|work| add(self.sums, work));
+    fn end(mut self) {
+        for ray in self.rays.saturating_sub(2)..self.rays {
+            add(self.sums, &mut self.points, &self.works[ray & 1]);
+        }
     }
 }
 
 #[inline(always)]
-fn add(sums: &mut [u64; Work::COUNT], work: &Work) {
+fn add(sums: &mut [u64; Work::COUNT], points: &mut Option<&mut Vec<u32>>, work: &Work) {
     for (sum, count) in sums.iter_mut().zip(work.counts()) {
         *sum += u64::from(count);
+    }
+    if let Some(points) = points {
+        points.push(work.intersection_points);
     }
 }
 
@@ -290,7 +321,7 @@ impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
         self.found.clear();
         let MethodTracer { views, limits, .. } = self.tracer;
         let begin = Instant::now();
-        let mut counting = Counting::new(&mut tally.work);
+        let mut counting = Counting::new(tally);
         self.found.extend(self.ready.iter().map(|ready| {
             let work = counting.next();
             ready.as_ref().map(|(origin, direction, interval)| {

@@ -4,16 +4,14 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use serde::Serialize;
 
-use super::render::{Drawn, draw, row};
+use super::render::{Drawn, draw};
 use super::{Failure, StatsOutputs, check_outputs, pool, progress};
-use crate::judge::{Agreement, Truth, allowance};
+use crate::judge::{Agreement, OracleStats, Truth, ask};
 use crate::oracle::Oracle;
 use crate::output::{Output, OutputError};
 use crate::picture::Picture;
@@ -37,18 +35,6 @@ pub struct DemoArgs {
     /// The common flags.
     #[command(flatten)]
     pub flags: Flags,
-}
-
-/// What the oracle found in the view.
-#[derive(Clone, Debug, Serialize)]
-struct OracleStats {
-    rays: u64,
-    hit_rays: u64,
-    roots: u64,
-    /// Rays whose answer the oracle leaves open.
-    open: u64,
-    /// Summed over threads.
-    seconds: f64,
 }
 
 /// A method in a precision, and how it did.
@@ -101,7 +87,9 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let view = description.camera.view(size.size.unwrap_or(description.image.size));
     let pool = pool(settings.threads)?;
 
-    let (truths, oracle) = pool.install(|| ask_oracle(&Oracle::new(&model), &view, flags.quiet));
+    let bar = progress(u64::from(view.scan_lines()), "asking the oracle", flags.quiet);
+    let (truths, oracle) = pool.install(|| ask(&Oracle::new(&model), &view, || bar.inc(1)));
+    bar.finish_and_clear();
     let (runs, picture) =
         compare(&model, &appearance, &view, &combinations(flags, &settings), &pool, (&truths, &oracle), flags.quiet)?;
     if let Some(picture) = picture {
@@ -153,12 +141,7 @@ fn compare(
     let mut runs = Vec::new();
     let mut picture = None;
     for ((settings, (_, used)), drawn) in settings.iter().zip(tracers).zip(fastest.unwrap_or_default()) {
-        let mut agreement = Agreement::default();
-        let allowance = allowance(settings.precision);
-        let directions = (0..view.size[1]).flat_map(|py| row(view, py)).map(|ray| ray.direction);
-        for ((outcome, truth), direction) in drawn.outcomes.iter().zip(truths).zip(directions) {
-            agreement.add(outcome, truth, direction, diagonal, &allowance);
-        }
+        let agreement = Agreement::of(&drawn.outcomes, truths, view, diagonal, settings.precision);
         let mut stats = Stats::new("teapot".to_owned(), settings, used, &drawn.tally);
         stats.size = Some(view.size);
         stats.samples = Some(view.sampling);
@@ -196,34 +179,6 @@ fn combinations(flags: &Flags, settings: &Settings) -> Vec<Settings> {
         }
     }
     all
-}
-
-fn ask_oracle(oracle: &Oracle, view: &View, quiet: bool) -> (Vec<Truth>, OracleStats) {
-    let bar = progress(u64::from(view.size[1]), "asking the oracle", quiet);
-    let rows: Vec<(Vec<Truth>, f64)> = (0..view.size[1])
-        .into_par_iter()
-        .map(|py| {
-            let begin = Instant::now();
-            let rays = row(view, py);
-            let truth = |ray: &crate::scene::rays::RayLine| {
-                Truth::from(&oracle.trace(ray.origin, ray.direction, ray.t_min, ray.t_max))
-            };
-            let truths = rays.iter().map(truth).collect();
-            bar.inc(1);
-            (truths, begin.elapsed().as_secs_f64())
-        })
-        .collect();
-    bar.finish_and_clear();
-    let seconds = rows.iter().map(|(_, seconds)| seconds).sum();
-    let truths: Vec<Truth> = rows.into_iter().flat_map(|(truths, _)| truths).collect();
-    let stats = OracleStats {
-        rays: truths.len() as u64,
-        hit_rays: truths.iter().filter(|truth| truth.closest.is_some()).count() as u64,
-        roots: truths.iter().map(|truth| truth.roots as u64).sum(),
-        open: truths.iter().filter(|truth| truth.open).count() as u64,
-        seconds,
-    };
-    (truths, stats)
 }
 
 impl Report {

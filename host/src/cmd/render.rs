@@ -11,11 +11,12 @@ use super::{Failure, StatsOutputs, check_outputs, pool, progress, say, say_gave_
 use crate::batch::Lanes;
 use crate::output::Output;
 use crate::picture::{GAVE_UP, Picture, Rgb, encode};
-use crate::scanline::{Outcome, Tally, Tracer};
+use crate::scanline::{Outcome, Tally, Tracer, rays_of};
+
+pub use crate::scanline::row;
 use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
-use crate::scene::rays::RayLine;
-use crate::scene::sampling::{Sampling, ScanLine};
+use crate::scene::sampling::Sampling;
 use crate::settings::{Flags, SizeFlag};
 use crate::shade::painter::{Colour, Painter};
 use crate::stats::Stats;
@@ -91,24 +92,6 @@ pub struct Drawn {
     pub tally: Tally,
 }
 
-/// The rays of scan line `line`: of a row of pixels where each has one sample, else of half of it.
-pub fn row(view: &View, line: u32) -> Vec<RayLine> {
-    rays(view, line, &view.scan_line(line))
-}
-
-/// The rays of the samples of scan line `line`.
-pub fn rays(view: &View, line: u32, samples: &ScanLine) -> Vec<RayLine> {
-    let ray = |&sample| RayLine {
-        origin: view.eye,
-        direction: view.towards(sample),
-        t_min: 0.0,
-        t_max: f64::INFINITY,
-        scan_line: u64::from(line),
-        valid: true,
-    };
-    samples.samples.iter().map(ray).collect()
-}
-
 /// Draws a view, a row of pixels a job, on rayon's current threads. The result does not depend on their number.
 pub fn draw(tracer: &dyn Tracer, view: &View, appearance: &Appearance, bar: &ProgressBar) -> Drawn {
     let painter = Painter::new(view.eye, appearance);
@@ -122,7 +105,7 @@ pub fn draw(tracer: &dyn Tracer, view: &View, appearance: &Appearance, bar: &Pro
             lanes.with(|lane| {
                 for line in side * py..side * (py + 1) {
                     let samples = view.scan_line(line);
-                    let rays = rays(view, line, &samples);
+                    let rays = rays_of(view, line, &samples);
                     let mut outcomes = Vec::with_capacity(rays.len());
                     lane.trace_line(&samples, &rays, &mut outcomes, &mut tally);
                     lines.push(painter.paint(lane, &rays, &outcomes));

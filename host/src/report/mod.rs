@@ -1,2 +1,5 @@
 //! What was found, as data for people and for programs.
 pub mod answers;
+pub mod table;
+pub mod tables;
+pub mod times;

@@ -184,7 +184,7 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
             ready.extend(block.iter().map(|sample| sample.map(P::Scalar::from_f64)));
             found.clear();
             let begin = Instant::now();
-            let mut counting = Counting::new(&mut tally.work);
+            let mut counting = Counting::new(tally);
             if let Some(line) = &mut of_line {
                 found.extend(ready.iter().map(|&place| {
                     number += step;

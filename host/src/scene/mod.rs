@@ -12,6 +12,7 @@ mod json;
 pub mod model;
 pub mod nearest;
 pub mod nurbs_python;
+pub mod paper;
 pub mod patches;
 pub mod polygon;
 pub mod rays;

@@ -1,0 +1,436 @@
+//! The paper's tables: what was measured, with the paper's figures beside it, for people and for programs.
+
+use serde::Serialize;
+
+use super::table::{Style, Table, grouped, percent, seconds};
+use super::times::Times;
+use crate::judge::{Agreement, OracleStats};
+use crate::scene::paper::{Figures, Improvement};
+use crate::scene::trace::{Method, Precision};
+
+/// All that was measured. Serialised, it is what `--json` prints.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// [`SCHEMA`](crate::stats::SCHEMA).
+    pub schema: u32,
+    /// The kernel's version.
+    pub version: &'static str,
+    /// Width and height of the pictures.
+    pub size: [u32; 2],
+    /// The precision of the methods.
+    pub precision: Precision,
+    /// How often each method traced each scene.
+    pub repetitions: u32,
+    /// The threads of the oracle: all times are of one thread.
+    pub oracle_threads: u32,
+    /// Seconds that all took.
+    pub seconds: f64,
+    /// The scenes.
+    pub scenes: Vec<SceneReport>,
+}
+
+/// What was measured on one scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneReport {
+    /// Its file's name without the ending.
+    pub name: &'static str,
+    /// What the paper says of it.
+    pub paper: Figures,
+    /// Its surfaces.
+    pub surfaces: u64,
+    /// Its patches.
+    pub patches: u64,
+    /// What the oracle found; `None` if it was not asked.
+    pub oracle: Option<OracleStats>,
+    /// Table 1: the numerical methods, the original first.
+    pub numerical: Vec<Run>,
+    /// Table 2: the clipping methods, the original first.
+    pub clipping: Vec<Run>,
+    /// Table 3.
+    pub sampling: Vec<SamplingRun>,
+    /// Table 4.
+    pub rays: Vec<RaysRun>,
+}
+
+/// A method on the primary rays of a picture.
+#[derive(Clone, Debug, Serialize)]
+pub struct Run {
+    /// The method.
+    pub method: Method,
+    /// Whether rays left something to the next. Without, what is gained over the original is owed to the order of search and its
+    /// early end.
+    pub coherence: bool,
+    /// Its times, of intersecting alone.
+    pub times: Times,
+    /// By what share it takes less time than the original.
+    pub gain: f64,
+    /// Rays.
+    pub rays: u64,
+    /// Rays that hit.
+    pub hit_rays: u64,
+    /// Rays given up.
+    pub gave_up: u64,
+    /// The paper's "intersection points".
+    pub intersection_points: u64,
+    /// How many of them are more than the roots that there are on their ray, so that roots must have been found twice.
+    pub found_twice: Option<u64>,
+    /// What the oracle says of its answers.
+    pub agreement: Option<Agreement>,
+}
+
+/// A method with four rays per pixel.
+#[derive(Clone, Debug, Serialize)]
+pub struct SamplingRun {
+    /// The method.
+    pub method: Method,
+    /// Its times with uniform samples.
+    pub uniform: Times,
+    /// Its times with jittered samples.
+    pub jittered: Times,
+    /// By what share jittered samples take less time than uniform ones: less than 0 where they take more.
+    pub gain: f64,
+}
+
+/// What kind of rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RaysKind {
+    /// The primary rays, one by one, along scan lines.
+    Primary,
+    /// The same in random order.
+    Shuffled,
+    /// From where primary rays hit to the first light.
+    Shadow,
+}
+
+impl RaysKind {
+    fn name(self) -> &'static str {
+        match self {
+            RaysKind::Primary => "primary",
+            RaysKind::Shuffled => "primary, shuffled",
+            RaysKind::Shadow => "shadow",
+        }
+    }
+}
+
+/// An original and its improved method on rays that are traced one by one.
+#[derive(Clone, Debug, Serialize)]
+pub struct RaysRun {
+    /// Which rays.
+    pub kind: RaysKind,
+    /// How many.
+    pub rays: u64,
+    /// The original method.
+    pub method: Method,
+    /// Its times.
+    pub original: Times,
+    /// The times of the improved method.
+    pub coherent: Times,
+    /// By what share that takes less time.
+    pub gain: f64,
+    /// The times of the original method asked for any hit, which is what shadows need.
+    pub any_hit: Option<Times>,
+}
+
+const FIGURE: (&str, bool) = ("Scene", false);
+const PATCHES: (&str, bool) = ("Patches/surfaces", true);
+
+impl Report {
+    /// The report as tables and notes.
+    pub fn to_text(&self, style: Style) -> String {
+        let tables = [
+            self.improvement("Table 1. Barth and Stürzlinger's algorithm", |scene| {
+                (&scene.numerical, &scene.paper.numerical)
+            }),
+            self.improvement("Table 2. Bézier clipping", |scene| (&scene.clipping, &scene.paper.clipping)),
+            self.samplings(),
+            self.rays(),
+        ];
+        let mut text: String = tables.iter().map(|table| table.to_text(style) + "\n").collect();
+        for note in self.notes() {
+            text += &note;
+            text += if style == Style::Markdown { "\n\n" } else { "\n" };
+        }
+        text.truncate(text.trim_end().len());
+        text + "\n"
+    }
+
+    fn setting(&self, rays: &str) -> String {
+        let [width, height] = self.size;
+        let precision = match self.precision {
+            Precision::F32 => "f32",
+            Precision::F64 => "f64",
+        };
+        format!("{width} × {height}, {rays}, {precision}, one thread")
+    }
+
+    /// Table 1 or 2.
+    fn improvement<'s>(
+        &'s self,
+        title: &str,
+        part: impl Fn(&'s SceneReport) -> (&'s Vec<Run>, &'s Improvement),
+    ) -> Table {
+        let mut rows = Vec::new();
+        for scene in &self.scenes {
+            let (runs, paper) = part(scene);
+            let figures = &scene.paper;
+            for (place, name) in ["paper, original", "paper, improved"].into_iter().enumerate() {
+                let gain = if place == 0 { String::new() } else { percent(paper.gain) };
+                let head = if place == 0 {
+                    [format!("Fig. {}", figures.figure), format!("{}/{}", figures.patches, figures.surfaces)]
+                } else {
+                    [String::new(), String::new()]
+                };
+                let cells = [name.to_owned(), seconds(paper.seconds[place]), String::new(), gain];
+                let mut row: Vec<String> = head.into_iter().chain(cells).collect();
+                row.push(grouped(paper.points[place]));
+                row.extend([const { String::new() }; 4]);
+                rows.push(row);
+            }
+            for (place, run) in runs.iter().enumerate() {
+                let head = if place == 0 {
+                    [scene.name.to_owned(), format!("{}/{}", scene.patches, scene.surfaces)]
+                } else {
+                    [String::new(), String::new()]
+                };
+                rows.push(head.into_iter().chain(run.cells(place == 0)).collect());
+            }
+        }
+        let columns = vec![
+            FIGURE,
+            PATCHES,
+            ("Algorithm", false),
+            ("Time s", true),
+            ("Spread %", true),
+            ("Gain %", true),
+            ("Intersection points", true),
+            ("Twice", true),
+            ("Wrong", true),
+            ("Missed", true),
+            ("Phantom", true),
+        ];
+        Table { title: format!("{title}: {}", self.setting("primary rays")), columns, rows }
+    }
+
+    /// Table 3.
+    fn samplings(&self) -> Table {
+        let mut rows = Vec::new();
+        for scene in &self.scenes {
+            let Figures { figure, patches, surfaces, sampling, .. } = &scene.paper;
+            let [uniform, jittered] = sampling.seconds.map(seconds);
+            let paper = "paper, improved numerical".to_owned();
+            let head = [format!("Fig. {figure}"), format!("{patches}/{surfaces}"), paper];
+            let cells = [uniform, jittered, String::new(), percent(sampling.gain)];
+            rows.push(head.into_iter().chain(cells).collect());
+            for (place, SamplingRun { method, uniform, jittered, gain }) in scene.sampling.iter().enumerate() {
+                let head = if place == 0 {
+                    [scene.name.to_owned(), format!("{}/{}", scene.patches, scene.surfaces)]
+                } else {
+                    [String::new(), String::new()]
+                };
+                let spread = uniform.spread.max(jittered.spread);
+                let cells = [
+                    method.name().to_owned(),
+                    seconds(uniform.median),
+                    seconds(jittered.median),
+                    percent(spread),
+                    percent(*gain),
+                ];
+                rows.push(head.into_iter().chain(cells).collect());
+            }
+        }
+        let columns = vec![
+            FIGURE,
+            PATCHES,
+            ("Algorithm", false),
+            ("Uniform s", true),
+            ("Jittered s", true),
+            ("Spread %", true),
+            ("Performance %", true),
+        ];
+        let title = format!("Table 3. Uniform and jittered sampling: {}", self.setting("four primary rays per pixel"));
+        Table { title, columns, rows }
+    }
+
+    /// Table 4.
+    fn rays(&self) -> Table {
+        let mut rows = Vec::new();
+        for scene in &self.scenes {
+            for (place, run) in scene.rays.iter().enumerate() {
+                let RaysRun { kind, rays, method, original, coherent, gain, any_hit } = run;
+                rows.push(vec![
+                    if place == 0 { scene.name.to_owned() } else { String::new() },
+                    kind.name().to_owned(),
+                    grouped(*rays),
+                    method.name().to_owned(),
+                    seconds(original.median),
+                    seconds(coherent.median),
+                    percent(original.spread.max(coherent.spread)),
+                    percent(*gain),
+                    any_hit.as_ref().map_or(String::new(), |times| seconds(times.median)),
+                ]);
+            }
+        }
+        let columns = vec![
+            FIGURE,
+            ("Rays", false),
+            ("Number", true),
+            ("Algorithm", false),
+            ("Original s", true),
+            ("Coherent s", true),
+            ("Spread %", true),
+            ("Gain %", true),
+            ("Original, any hit s", true),
+        ];
+        let title = format!("Table 4. Where coherence does not pay: {}", self.setting("rays one by one"));
+        Table { title, columns, rows }
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let Report { repetitions, .. } = self;
+        let mut notes = vec![
+            format!(
+                "Times are of intersecting alone, without preparation and shading: medians of {repetitions} repetitions, all \
+                 methods of a scene in turn; the spread is from the first to the third quartile. A gain is the median of the \
+                 repetitions' gains. The paper's times are of 512 × 512 pixels on a Pentium II of 300 MHz."
+            ),
+            "\"Nothing kept\" is the method with its memory emptied before each ray: what it then gains over the original is \
+             owed to its order of search and its early end, and not to coherence."
+                .to_owned(),
+            "Twice: intersection points in excess of the roots that the oracle finds on their ray. Wrong, missed and phantom \
+             pixels are by the oracle too."
+                .to_owned(),
+        ];
+        for SceneReport { name, oracle, numerical, clipping, .. } in &self.scenes {
+            if let Some(OracleStats { rays, hit_rays, roots, open, .. }) = oracle {
+                let [rays, hits, roots, open] = [*rays, *hit_rays, *roots, *open].map(grouped);
+                notes.push(format!(
+                    "Oracle on {name}: of {rays} rays {hits} hit, with {roots} roots in all; {open} answers are left open."
+                ));
+            }
+            for run in numerical.iter().chain(clipping) {
+                let undecided = run.agreement.map_or(0, |agreement| agreement.undecided);
+                if run.gave_up > 0 || undecided > 0 {
+                    notes.push(format!(
+                        "{} on {name}: {} rays were given up, {undecided} answers are undecided.",
+                        run.name(),
+                        run.gave_up
+                    ));
+                }
+            }
+        }
+        notes
+    }
+}
+
+impl Run {
+    fn name(&self) -> String {
+        let kept = if self.coherence { "" } else { ", nothing kept" };
+        format!("{}{kept}", self.method.name())
+    }
+
+    fn cells(&self, original: bool) -> [String; 9] {
+        let count =
+            |part: fn(&Agreement) -> u64| self.agreement.as_ref().map_or(String::new(), |all| part(all).to_string());
+        [
+            self.name(),
+            seconds(self.times.median),
+            percent(self.times.spread),
+            if original { String::new() } else { percent(self.gain) },
+            grouped(self.intersection_points),
+            self.found_twice.map_or(String::new(), grouped),
+            count(|all| all.wrong),
+            count(|all| all.missed),
+            count(|all| all.phantom),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::paper::SCENES;
+
+    fn report() -> Report {
+        let times = |seconds: f64| Times::of(vec![seconds]);
+        let run = |method, coherence, took: f64| Run {
+            method,
+            coherence,
+            times: times(took),
+            gain: 1.0 - took / 0.05,
+            rays: 4,
+            hit_rays: 3,
+            gave_up: u64::from(!coherence),
+            intersection_points: 123_456,
+            found_twice: Some(1000),
+            agreement: Some(Agreement { right: 1, wrong: 7, missed: 8, phantom: 9, ..Agreement::default() }),
+        };
+        let scene = SceneReport {
+            name: "teapot",
+            paper: SCENES[0].figures,
+            surfaces: 32,
+            patches: 7584,
+            oracle: Some(OracleStats { rays: 4, hit_rays: 3, roots: 5, open: 0, seconds: 1.0 }),
+            numerical: vec![run(Method::Newton, true, 0.05), run(Method::NewtonPredicted, false, 0.03)],
+            clipping: vec![run(Method::Clipping, true, 0.05)],
+            sampling: vec![SamplingRun {
+                method: Method::NewtonCoherent,
+                uniform: times(0.2),
+                jittered: times(0.204),
+                gain: -0.02,
+            }],
+            rays: vec![RaysRun {
+                kind: RaysKind::Shadow,
+                rays: 3,
+                method: Method::Clipping,
+                original: times(0.1),
+                coherent: times(0.11),
+                gain: -0.1,
+                any_hit: Some(times(0.0512)),
+            }],
+        };
+        Report {
+            schema: 1,
+            version: "0",
+            size: [512, 512],
+            precision: Precision::F64,
+            repetitions: 1,
+            oracle_threads: 2,
+            seconds: 9.0,
+            scenes: vec![scene],
+        }
+    }
+
+    #[test]
+    fn the_paper_s_rows_stand_above_ours() {
+        let text = report().to_text(Style::Markdown);
+        for row in [
+            "| Fig. 8 | 7594/32 | paper, original | 10.7 |  |  | 110,169 |  |  |  |  |",
+            "|  |  | paper, improved | 8.57 |  | 20 | 100,337 |  |  |  |  |",
+            "| teapot | 7584/32 | newton | 0.0500 | 0 |  | 123,456 | 1,000 | 7 | 8 | 9 |",
+            "|  |  | newton-predicted, nothing kept | 0.0300 | 0 | 40 | 123,456 | 1,000 | 7 | 8 | 9 |",
+            "| Fig. 8 | 7594/32 | paper, original | 32.9 |  |  | 146,910 |  |  |  |  |",
+            "| Fig. 8 | 7594/32 | paper, improved numerical | 33.9 | 34.7 |  | -1 |",
+            "| teapot | 7584/32 | newton-coherent | 0.200 | 0.204 | 0 | -2 |",
+            "| teapot | shadow | 3 | clipping | 0.100 | 0.110 | 0 | -10 | 0.0512 |",
+        ] {
+            assert!(text.contains(row), "{row}\n{text}");
+        }
+        let rows = text.lines().filter(|line| line.starts_with('|'));
+        assert!(rows.clone().count() == 4 * 2 + 4 + 3 + 2 + 1, "{text}");
+        assert!(text.contains("newton-predicted, nothing kept on teapot: 1 rays were given up"), "{text}");
+    }
+
+    #[test]
+    fn text_has_the_same_cells() {
+        let report = report();
+        let words = |style| {
+            let text = report.to_text(style).replace(['|', '*'], " ").replace("---:", "").replace("---", "");
+            text.split_whitespace().map(str::to_owned).collect::<Vec<_>>()
+        };
+        assert_eq!(words(Style::Text), words(Style::Markdown));
+        let json = serde_json::to_value(&report).expect("plain data");
+        assert_eq!(json["scenes"][0]["numerical"][1]["method"], "newton-predicted");
+        assert_eq!(json["scenes"][0]["paper"]["numerical"]["points"][0], 110_169);
+    }
+}
