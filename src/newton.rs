@@ -108,16 +108,16 @@ impl<S: Scalar> Local<S> {
         !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * lengths)
     }
 
-    /// How fast the root moves, in u and in v, if the ray's slopes change this fast: f and g, of which the derivatives are
-    /// taken at a fixed place on the surface, then change by that times the distance from the eye.
+    /// How fast the root moves, in u and in v, if the ray's slopes change as fast as each of these: f and g at a fixed place on
+    /// the surface then change by that times the distance from the eye.
     #[inline(always)]
-    pub(crate) fn rate(&self, distance: S, [slope_f, slope_g]: [S; 2]) -> Option<[S; 2]> {
+    pub(crate) fn rates(&self, distance: S, slopes: [[S; 2]; 2]) -> Option<[[S; 2]; 2]> {
         if self.may_be_singular() {
             return None;
         }
         let share = distance * self.weight / self.determinant;
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
-        Some([(gv * slope_f - fv * slope_g) * share, (fu * slope_g - gu * slope_f) * share])
+        Some(slopes.map(|[f, g]| [(gv * f - fv * g) * share, (fu * g - gu * f) * share]))
     }
 
     /// How far in u and in v the inverse of the Jacobian carries an error of this length in f and g, times the weight.

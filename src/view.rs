@@ -157,13 +157,13 @@ pub struct ViewRay<S> {
 /// A ray of a view, with all that searching takes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facing<S> {
-    pub(crate) x: S,
+    pub(crate) place: [S; 2],
     pub(crate) planes: Planes<S>,
     pub(crate) range: DepthRange<S>,
     /// The distance from the eye to where depth is 0.
     pub(crate) ahead: S,
-    /// How fast its slopes change with x.
-    pub(crate) turning: [S; 2],
+    /// How fast its slopes change with x, and with y.
+    pub(crate) turning: [[S; 2]; 2],
 }
 
 impl<'m, P: Point> View<'m, P> {
@@ -291,8 +291,8 @@ impl<'m, P: Point> View<'m, P> {
     /// The ray with all that searching takes: most rays that meet nothing are done with before.
     #[inline(always)]
     pub(crate) fn facing(&self, ray: &ViewRay<P::Scalar>) -> Facing<P::Scalar> {
-        let ViewHeader { eye, middle, directions: [_, right, _], scale, unscale, .. } = &self.header;
-        let ViewRay { place: [x, _], direction: [across, upward, speed], interval } = *ray;
+        let ViewHeader { eye, middle, directions: [_, right, up], scale, unscale, .. } = &self.header;
+        let ViewRay { place, direction: [across, upward, speed], interval } = *ray;
         let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
         let inverse = one / speed;
         let slopes = [across * inverse, upward * inverse];
@@ -304,8 +304,8 @@ impl<'m, P: Point> View<'m, P> {
         let t_per_depth = *unscale * inverse;
         let direction = [slopes[0], slopes[1], one];
         let planes = Planes::turned(origin, direction, ahead * t_per_depth, t_per_depth, interval);
-        let turning = [right[0] - slopes[0] * right[2], right[1] - slopes[1] * right[2]].map(|c| c * inverse);
-        Facing { x, planes, range, ahead, turning }
+        let turning = [right, up].map(|v| [v[0] - slopes[0] * v[2], v[1] - slopes[1] * v[2]].map(|c| c * inverse));
+        Facing { place, planes, range, ahead, turning }
     }
 }
 

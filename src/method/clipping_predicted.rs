@@ -80,8 +80,7 @@ fn closest_so_far<P: Point>(
     best: &mut Option<Best<P::Scalar>>,
     work: &mut Work,
 ) -> Result<(), Limit> {
-    let x = ray.x;
-    let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(x, stamp));
+    let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(ray.place, stamp));
     let mut search = Search { view, ray, limits, nearby, room, projected: None };
     let mut resumed = false;
     if let Some(start) = start.filter(|_| search.nearby.holds_surface(last)) {

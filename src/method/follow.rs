@@ -1,7 +1,12 @@
 //! Coherence memory that predicts: where on a surface the next ray of a scan line will meet it.
 //!
-//! (u, v) along the line are extrapolated by the cubic through the last two rays' values and derivatives (Hermite), for steps
-//! of uneven length. The derivatives come from the last Newton steps, which computed all that they need.
+//! (u, v) of the last ray are extrapolated by their derivatives in the image's x and y, which the last Newton step computed
+//! all but; by second derivatives, which follow from how the first ones change from ray to ray; and, as far as a ray goes
+//! the way of the last one, by the third derivative that makes values and derivatives at both of its ends agree. In a row of
+//! the image that is the cubic through the last two rays (Hermite); jittered rays stray from it to all sides.
+//!
+//! Source for the second derivatives: M. J. D. Powell's symmetric form of Broyden's update, "A new algorithm for unconstrained
+//! optimization", 1970: of all symmetric matrices that explain the last change it is the one nearest to the old.
 
 use crate::limits::Work;
 use crate::newton::{Local, Root};
@@ -10,16 +15,22 @@ use crate::scalar::Scalar;
 use crate::view::Facing;
 
 /// What the previous ray of a scan line left on one surface: a slot of memory that the caller lends, one per surface and
-/// thread.
+/// thread. Pairs are of u and v, or of x and y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Followed<S> {
+    /// (x, y) of the ray.
+    place: [S; 2],
     /// (u, v) of its point.
     at: [S; 2],
-    /// By how much they change per unit of x, per its square and per its cube.
-    rates: [[S; 2]; 3],
-    /// Where in the line the ray was.
-    x: S,
+    /// Their derivatives in x and in y.
+    slopes: [[S; 2]; 2],
+    /// Half their second derivatives in xx, those in xy, and half those in yy.
+    bends: [[S; 2]; 3],
+    /// What the last way added to them more than the mean of the derivatives at its ends says.
+    excess: [S; 2],
+    /// The way from the ray before to this one, over the square of its length; 0 if there was none.
+    way: [S; 2],
     /// The scan line that it belongs to, plus one; 0 holds nothing. So nothing need be cleared between scan lines.
     stamp: u32,
 }
@@ -35,35 +46,59 @@ pub struct Following<'m, S> {
 
 impl<S: Scalar> Followed<S> {
     /// What a slot holds before it is filled.
-    pub const EMPTY: Self = Followed { at: [S::ZERO; 2], rates: [[S::ZERO; 2]; 3], x: S::ZERO, stamp: 0 };
+    pub const EMPTY: Self = Followed {
+        place: [S::ZERO; 2],
+        at: [S::ZERO; 2],
+        slopes: [[S::ZERO; 2]; 2],
+        bends: [[S::ZERO; 2]; 3],
+        excess: [S::ZERO; 2],
+        way: [S::ZERO; 2],
+        stamp: 0,
+    };
 
-    /// Where the ray at `x` of scan line `stamp` is predicted to meet the surface; `None` without memory of that line.
+    /// Where the ray at (x, y) of scan line `stamp` is predicted to meet the surface; `None` without memory of that line.
     #[inline(always)]
-    pub(super) fn predict(&self, x: S, stamp: u32) -> Option<[S; 2]> {
+    pub(super) fn predict(&self, place: [S; 2], stamp: u32) -> Option<[S; 2]> {
         if self.stamp != stamp || stamp == 0 {
             return None;
         }
-        let step = x - self.x;
-        let [first, second, third] = &self.rates;
-        Some(core::array::from_fn(|k| self.at[k] + step * (first[k] + step * (second[k] + step * third[k]))))
+        let (x, y) = (place[0] - self.place[0], place[1] - self.place[1]);
+        let along = x * self.way[0] + y * self.way[1];
+        let third = along * along * (S::from_u32(3) + along + along);
+        let ([by_x, by_y], [xx, xy, yy]) = (&self.slopes, &self.bends);
+        Some(core::array::from_fn(|k| {
+            let smooth = x * (by_x[k] + x * xx[k] + y * xy[k]) + y * (by_y[k] + y * yy[k]);
+            self.at[k] + smooth - third * self.excess[k]
+        }))
     }
 
     /// Keeps what a ray found.
     #[inline(always)]
-    pub(super) fn keep(&mut self, &Best { root, rate, .. }: &Best<S>, ray: &Facing<S>, stamp: u32) {
-        let x = ray.x;
+    pub(super) fn keep(&mut self, Best { root, rates, .. }: &Best<S>, ray: &Facing<S>, stamp: u32) {
         let at = [root.u, root.v];
-        let mut rates = [rate, [S::ZERO; 2], [S::ZERO; 2]];
-        let (step, old) = (x - self.x, self.rates[0]);
-        if self.stamp == stamp && rate != [S::ZERO; 2] && old != [S::ZERO; 2] && step != S::ZERO {
-            let inverse = S::ONE / step;
+        let (x, y) = (ray.place[0] - self.place[0], ray.place[1] - self.place[1]);
+        let square = x * x + y * y;
+        let goes_on = self.stamp == stamp && self.slopes != [[S::ZERO; 2]; 2] && square > S::ZERO;
+        if let (true, Some([by_x, by_y])) = (goes_on, rates) {
+            let inverse = S::ONE / square;
+            let (over_x, over_y) = (x * inverse, y * inverse);
             for k in 0..2 {
-                let mean = (at[k] - self.at[k]) * inverse;
-                rates[1][k] = (old[k] + rate[k] + rate[k] - mean - mean - mean) * inverse;
-                rates[2][k] = (old[k] + rate[k] - mean - mean) * (inverse * inverse);
+                let ([old_x, old_y], [xx, xy, yy]) = (&self.slopes, &mut self.bends);
+                let excess = at[k] - self.at[k] - ((old_x[k] + by_x[k]) * x + (old_y[k] + by_y[k]) * y) * S::HALF;
+                // What the derivatives changed by, less what the second ones made expect.
+                let change_x = by_x[k] - old_x[k] - ((xx[k] + xx[k]) * x + xy[k] * y);
+                let change_y = by_y[k] - old_y[k] - (xy[k] * x + (yy[k] + yy[k]) * y);
+                let share = (change_x * over_x + change_y * over_y) * S::HALF;
+                xx[k] = xx[k] + (change_x - share * x) * over_x;
+                yy[k] = yy[k] + (change_y - share * y) * over_y;
+                xy[k] = xy[k] + change_x * over_y + (change_y - (share + share) * y) * over_x;
+                self.excess[k] = excess;
             }
+            (self.place, self.at, self.slopes, self.way) = (ray.place, at, [*by_x, *by_y], [over_x, over_y]);
+        } else {
+            let slopes = rates.unwrap_or([[S::ZERO; 2]; 2]);
+            *self = Followed { place: ray.place, at, slopes, stamp, ..Self::EMPTY };
         }
-        *self = Followed { at, rates, x, stamp };
     }
 }
 
@@ -72,16 +107,15 @@ impl<S: Scalar> Followed<S> {
 pub(super) struct Best<S> {
     pub(super) root: Root<S>,
     pub(super) surface: u32,
-    /// How fast (u, v) moves along the line there, per unit of x; 0 if that is not known.
-    pub(super) rate: [S; 2],
+    /// How fast (u, v) moves there, per unit of x and per unit of y, if that is known.
+    pub(super) rates: Option<[[S; 2]; 2]>,
 }
 
 impl<S: Scalar> Best<S> {
     /// A root of a ray on a surface, near which `local` holds.
     #[inline(always)]
     pub(super) fn new(root: Root<S>, surface: u32, local: &Local<S>, ray: &Facing<S>) -> Self {
-        let rate = local.rate(root.depth + ray.ahead, ray.turning).unwrap_or([S::ZERO; 2]);
-        Best { root, surface, rate }
+        Best { root, surface, rates: local.rates(root.depth + ray.ahead, ray.turning) }
     }
 
     /// Counts a root as an intersection point if it lies in the ray's interval, and keeps it if it is closer; of equal ones that
@@ -98,3 +132,6 @@ impl<S: Scalar> Best<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -19,7 +19,6 @@ use crate::patch::Patch;
 use crate::planes::DepthRange;
 use crate::point::Point;
 use crate::ray::Hit;
-use crate::scalar::Scalar;
 use crate::verify::{met_at_most_once, reaches};
 use crate::view::{Facing, View, ViewRay};
 
@@ -70,8 +69,8 @@ fn closest_so_far<P: Point>(
     best: &mut Option<Best<P::Scalar>>,
     work: &mut Work,
 ) -> Result<(), Limit> {
-    let (planes, x) = (&ray.planes, ray.x);
-    let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(x, stamp));
+    let planes = &ray.planes;
+    let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(ray.place, stamp));
     let start = start.filter(|_| nearby.holds_surface(last));
     let first = if start.is_some() { last } else { nearby.first_surface().ok_or(Limit::Slot)? };
     let surface = view.surface(first as usize).ok_or(Limit::Slot)?;
@@ -88,7 +87,7 @@ fn closest_so_far<P: Point>(
     }
     if let Some(best) = best {
         // Of a root that a patch led to, for the next ray's sake.
-        if best.rate == [P::Scalar::ZERO; 2] {
+        if best.rates.is_none() {
             search.solver.turn_to(&view.surface(best.surface as usize).ok_or(Limit::Slot)?);
             let local = search.solver.local([best.root.u, best.root.v], work)?;
             *best = Best::new(best.root, best.surface, &local, ray);
@@ -144,7 +143,7 @@ impl<P: Point> Search<'_, '_, '_, P> {
             verified = false;
             solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
             if let Some(root) = from_patch(solver, patch, crossing, First::Entrance, work)? {
-                Best::keep(best, Best { root, surface: number, rate: [P::Scalar::ZERO; 2] }, planes, work);
+                Best::keep(best, Best { root, surface: number, rates: None }, planes, work);
             }
             Ok(best.map_or(farthest, |best| best.root.depth))
         })?;
@@ -172,7 +171,7 @@ impl<P: Point> Search<'_, '_, '_, P> {
                 if crossing.overlaps(&range) {
                     solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
                     if let Some(root) = from_patch(solver, patch, crossing, First::AsCritical, work)? {
-                        Best::keep(best, Best { root, surface: number, rate: [P::Scalar::ZERO; 2] }, planes, work);
+                        Best::keep(best, Best { root, surface: number, rates: None }, planes, work);
                     }
                 }
                 Ok(best.map_or(ray.range.max, |best| best.root.depth))

@@ -1,0 +1,83 @@
+use super::*;
+use crate::planes::DepthRange;
+use crate::ray::Interval;
+
+fn facing(place: [f64; 2]) -> Facing<f64> {
+    let planes = Planes::turned([0.0; 3], [0.0, 0.0, 1.0], 0.0, 1.0, Interval::ahead());
+    Facing { place, planes, range: DepthRange { min: 0.0, max: 1.0 }, ahead: 1.0, turning: [[1.0, 0.0], [0.0, 1.0]] }
+}
+
+/// u and v as functions of x and y, with their derivatives per unit of x and of y.
+type Motion = fn(f64, f64) -> ([f64; 2], [[f64; 2]; 2]);
+
+fn quadratic(x: f64, y: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+    let at =
+        [0.2 + 0.5 * x - 0.3 * y + 2.0 * x * x + 1.5 * x * y - y * y, 0.7 - x + 0.25 * y - x * x + 0.5 * x * y + y * y];
+    let per_x = [0.5 + 4.0 * x + 1.5 * y, -1.0 - 2.0 * x + 0.5 * y];
+    let per_y = [-0.3 + 1.5 * x - 2.0 * y, 0.25 + 0.5 * x + 2.0 * y];
+    (at, [per_x, per_y])
+}
+
+fn cubic(x: f64, _: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+    let at = [0.5 + x * (1.0 + x * (2.0 - 3.0 * x)), x * x * x];
+    (at, [[1.0 + x * (4.0 - 9.0 * x), 3.0 * x * x], [0.0; 2]])
+}
+
+fn keep(memory: &mut Followed<f64>, motion: Motion, place: [f64; 2], stamp: u32) {
+    let ([u, v], rates) = motion(place[0], place[1]);
+    let root = Root { u, v, depth: 0.0, grazing: false };
+    memory.keep(&Best { root, surface: 0, rates: Some(rates) }, &facing(place), stamp);
+}
+
+fn error(memory: &Followed<f64>, motion: Motion, place: [f64; 2], stamp: u32) -> f64 {
+    let (expected, _) = motion(place[0], place[1]);
+    let predicted = memory.predict(place, stamp).unwrap();
+    (predicted[0] - expected[0]).abs() + (predicted[1] - expected[1]).abs()
+}
+
+#[test]
+fn along_a_row_the_prediction_is_the_cubic_through_two_rays_however_long_the_steps() {
+    let mut memory = Followed::EMPTY;
+    for x in [0.0, 0.01] {
+        keep(&mut memory, cubic, [x, 0.0], 3);
+    }
+    for x in [0.02, 0.013, 0.05] {
+        assert!(error(&memory, cubic, [x, 0.0], 3) < 1e-13, "{}", error(&memory, cubic, [x, 0.0], 3));
+    }
+}
+
+/// Without second derivatives across the row every jittered ray would be predicted as badly as if only the last point were
+/// known: half a pixel off.
+#[test]
+fn jittered_rays_teach_the_second_derivatives_of_both_directions() {
+    let mut memory = Followed::EMPTY;
+    let places = [
+        [0.0, 0.002],
+        [0.011, -0.004],
+        [0.018, 0.003],
+        [0.031, 0.001],
+        [0.039, -0.002],
+        [0.052, 0.004],
+        [0.06, -0.003],
+    ];
+    for place in places {
+        keep(&mut memory, quadratic, place, 1);
+    }
+    assert!(error(&memory, quadratic, [0.071, 0.003], 1) < 1e-6, "{}", error(&memory, quadratic, [0.071, 0.003], 1));
+    let bare = quadratic(0.071, 0.003).0[0] - quadratic(0.06, -0.003).0[0];
+    assert!(bare.abs() > 5e-3);
+}
+
+#[test]
+fn another_line_is_not_remembered_and_an_unknown_rate_predicts_the_last_point() {
+    let mut memory = Followed::EMPTY;
+    assert_eq!(memory.predict([0.0; 2], 0), None);
+    keep(&mut memory, quadratic, [0.0, 0.0], 5);
+    assert_eq!(memory.predict([0.0; 2], 4), None);
+    keep(&mut memory, quadratic, [0.1, 0.0], 6);
+    // Nothing of line 5 is left in it.
+    assert!(error(&memory, quadratic, [0.1, 0.0], 6) < 1e-15 && memory.bends == [[0.0; 2]; 3]);
+    let root = Root { u: 0.3, v: 0.4, depth: 0.0, grazing: false };
+    memory.keep(&Best { root, surface: 0, rates: None }, &facing([0.2, 0.0]), 6);
+    assert_eq!(memory.predict([0.3, 0.1], 6), Some([0.3, 0.4]));
+}
