@@ -89,9 +89,9 @@ impl<S: Scalar> Followed<S> {
                 let change_x = by_x[k] - old_x[k] - ((xx[k] + xx[k]) * x + xy[k] * y);
                 let change_y = by_y[k] - old_y[k] - (xy[k] * x + (yy[k] + yy[k]) * y);
                 let share = (change_x * over_x + change_y * over_y) * S::HALF;
-                xx[k] = xx[k] + (change_x - share * x) * over_x;
-                yy[k] = yy[k] + (change_y - share * y) * over_y;
-                xy[k] = xy[k] + change_x * over_y + (change_y - (share + share) * y) * over_x;
+                xx[k] += (change_x - share * x) * over_x;
+                yy[k] += (change_y - share * y) * over_y;
+                xy[k] += change_x * over_y + (change_y - (share + share) * y) * over_x;
                 self.excess[k] = excess;
             }
             (self.place, self.at, self.slopes, self.way) = (ray.place, at, [*by_x, *by_y], [over_x, over_y]);
