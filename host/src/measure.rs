@@ -26,7 +26,7 @@ pub struct Scene<'s> {
     pub picture: View,
     /// How to trace, but for the method.
     pub settings: Settings,
-    /// How often each method traces it.
+    /// How often each method traces it for Tables 1 and 2; for the others, [`fewer`].
     pub repetitions: u32,
     /// Called after each pass of a method, [`passes`] times in all.
     pub step: &'s dyn Fn(),
@@ -61,7 +61,12 @@ const PAIRS: [[Method; 2]; 2] =
 /// How often [`Scene::step`] is called for the tables of one scene.
 pub fn passes(repetitions: u32) -> u64 {
     // Those of Tables 1 and 2 are traced once more, to be judged.
-    u64::from(repetitions) * (10 + 8 + 3 * 4 + 2) + 10
+    u64::from(repetitions) * 10 + 10 + u64::from(fewer(repetitions)) * (8 + 3 * 4 + 2)
+}
+
+/// How often methods trace what Tables 3 and 4 are of, which takes longer: half as often, rounded up.
+pub fn fewer(repetitions: u32) -> u32 {
+    repetitions.div_ceil(2)
 }
 
 /// What was measured for Tables 1 and 2.
@@ -86,9 +91,9 @@ fn trace_picture(lane: &mut dyn Lane, picture: &View, tally: &mut Tally, mut eac
 }
 
 /// The times of several things to do, which are done in turn: each says how many seconds it took.
-fn in_turn<T>(scene: &Scene, subjects: &mut [T], mut pass: impl FnMut(&mut T) -> f64) -> Vec<Times> {
+fn in_turn<T>(scene: &Scene, repetitions: u32, subjects: &mut [T], mut pass: impl FnMut(&mut T) -> f64) -> Vec<Times> {
     let mut seconds = vec![Vec::new(); subjects.len()];
-    for _ in 0..scene.repetitions {
+    for _ in 0..repetitions {
         for (subject, seconds) in subjects.iter_mut().zip(&mut seconds) {
             seconds.push(pass(subject));
             (scene.step)();
@@ -104,19 +109,23 @@ fn found_twice(points: &[u32], truths: &[Truth]) -> u64 {
 }
 
 impl Scene<'_> {
-    fn viewed(&self, method: Method, coherence: bool, picture: &View) -> Result<Viewed, LowerError> {
-        // Clipping is compared at its fastest.
-        let wishes = Wishes { patches: true, coherence, ..Wishes::PRIMARY };
-        Viewed::build(self.model, &Settings { method, ..self.settings }, picture, wishes)
-    }
-
-    /// Tables 1 and 2; answers are judged by the `truths`, if there are any.
+    /// The scene made ready for views, by any method: clipping has patches too, and is compared at its fastest.
     ///
     /// # Errors
     /// As [`Viewed::build`].
-    pub fn primary(&self, truths: Option<&[Truth]>) -> Result<Primary, LowerError> {
+    pub fn viewed(&self) -> Result<Viewed, LowerError> {
+        let settings = Settings { method: Method::Newton, ..self.settings };
+        Viewed::build(self.model, &settings, &self.picture, Wishes { patches: true, ..Wishes::PRIMARY })
+    }
+
+    /// Tables 1 and 2, of the scene as [`Scene::viewed`] makes it ready; answers are judged by the `truths`, if there
+    /// are any.
+    ///
+    /// # Errors
+    /// As [`Viewed::with`].
+    pub fn primary(&self, viewed: &Viewed, truths: Option<&[Truth]>) -> Result<Primary, LowerError> {
         let subjects = SUBJECTS.as_flattened();
-        let viewed = subjects.iter().map(|&(method, coherence)| self.viewed(method, coherence, &self.picture));
+        let viewed = subjects.iter().map(|&(method, coherence)| viewed.with(method, coherence, &self.picture));
         let mut viewed = viewed.collect::<Result<Vec<_>, _>>()?;
         let tracers = viewed.iter_mut().map(Viewed::tracer).collect::<Result<Vec<_>, _>>()?;
         let size = tracers.first().map_or([0; 2], |(_, used)| [used.surfaces, used.patches]);
@@ -137,7 +146,7 @@ impl Scene<'_> {
             }
             (self.step)();
         }
-        let times = in_turn(self, &mut lanes, |lane| {
+        let times = in_turn(self, self.repetitions, &mut lanes, |lane| {
             let mut tally = Tally::default();
             trace_picture(lane.as_mut(), &self.picture, &mut tally, |_| {});
             tally.seconds
@@ -163,19 +172,19 @@ impl Scene<'_> {
         Ok(Primary { runs, outcomes: by_clipping, size })
     }
 
-    /// Table 3.
+    /// Table 3, of the scene as [`Scene::viewed`] makes it ready.
     ///
     /// # Errors
-    /// As [`Viewed::build`].
-    pub fn samplings(&self) -> Result<Vec<SamplingRun>, LowerError> {
+    /// As [`Viewed::with`].
+    pub fn samplings(&self, viewed: &Viewed) -> Result<Vec<SamplingRun>, LowerError> {
         let pictures = [Sampling::Uniform, Sampling::Jittered].map(|sampling| self.picture.sampled(sampling));
         let subjects: Vec<_> = SAMPLED.iter().flat_map(|&method| pictures.map(|picture| (method, picture))).collect();
-        let viewed = subjects.iter().map(|(method, picture)| self.viewed(*method, true, picture));
+        let viewed = subjects.iter().map(|(method, picture)| viewed.with(*method, true, picture));
         let mut viewed = viewed.collect::<Result<Vec<_>, _>>()?;
         let tracers = viewed.iter_mut().map(Viewed::tracer).collect::<Result<Vec<_>, _>>()?;
         let lanes = tracers.iter().map(|(tracer, _)| tracer.lane());
         let mut lanes: Vec<_> = lanes.zip(&subjects).map(|(lane, (_, picture))| (lane, picture)).collect();
-        let times = in_turn(self, &mut lanes, |(lane, picture)| {
+        let times = in_turn(self, fewer(self.repetitions), &mut lanes, |(lane, picture)| {
             let mut tally = Tally::default();
             trace_picture(lane.as_mut(), picture, &mut tally, |_| {});
             tally.seconds
@@ -217,13 +226,14 @@ impl Scene<'_> {
                 PAIRS.iter().filter_map(|&[method, _]| prepared.tracer_of_any(&Settings { method, ..self.settings }));
             tracers.extend(any);
         }
-        let mut lanes: Vec<_> = tracers.iter().map(|tracer| tracer.lane()).collect();
-        let times = in_turn(self, &mut lanes, |lane| {
+        let mut lanes: Vec<_> = tracers.iter().map(|tracer| (tracer.lane(), 0)).collect();
+        let times = in_turn(self, fewer(self.repetitions), &mut lanes, |(lane, points)| {
             let (mut tally, mut outcomes) = (Tally::default(), Vec::new());
             for line in lines {
                 outcomes.clear();
                 lane.trace(line, false, &mut outcomes, &mut tally);
             }
+            *points = tally.count("intersection_points");
             tally.seconds
         });
         let (pairs, any) = times.split_at(2 * PAIRS.len());
@@ -237,6 +247,7 @@ impl Scene<'_> {
                 gain: coherent.gain_over(original),
                 original: original.clone(),
                 coherent: coherent.clone(),
+                intersection_points: [2 * place, 2 * place + 1].map(|k| lanes.get(k).map_or(0, |(_, points)| *points)),
                 any_hit: any.get(place).cloned(),
             })
         };
@@ -288,9 +299,10 @@ mod tests {
             repetitions: 2,
             step: &|| steps.set(steps.get() + 1),
         };
+        let viewed = scene.viewed().expect("there is memory");
         let oracle = crate::oracle::Oracle::new(&loaded.model);
         let (truths, _) = crate::judge::ask(&oracle, &picture, || {});
-        let Primary { runs, outcomes, size } = scene.primary(Some(&truths)).expect("there is memory");
+        let Primary { runs, outcomes, size } = scene.primary(&viewed, Some(&truths)).expect("there is memory");
         assert_eq!(size[0], 32);
         let hits = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
         for runs in &runs {
@@ -302,7 +314,7 @@ mod tests {
                 assert!(run.found_twice.expect("it was judged") < run.intersection_points);
             }
         }
-        assert_eq!(scene.samplings().expect("there is memory").len(), 4);
+        assert_eq!(scene.samplings(&viewed).expect("there is memory").len(), 4);
         let rays = scene.one_by_one(&outcomes).expect("there is memory");
         let counts: Vec<u64> = rays.iter().map(|run| run.rays).collect();
         let hits = hits as u64;

@@ -17,12 +17,12 @@ use crate::stats::Used;
 /// How a picture is to be traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wishes {
-    /// Whether to trace the rays of a scan line by what they share, where that can be done. Else they are traced one by one,
-    /// which is for comparing the two.
+    /// Whether to trace the rays of a scan line by what they share, where that can be done. Else they are traced one by
+    /// one, which is for comparing the two.
     pub view: bool,
-    /// Whether `clipping` is given patches, by which a scan line tells what part of a surface a ray may meet. On the common
-    /// view, one thread, they halve the time per ray (677 to 333 ns), and the 27 ms that making them takes are won back after
-    /// some 80,000 rays; but the scene then takes 2.3 MB instead of 31 KB.
+    /// Whether `clipping` is given patches, by which a scan line tells what part of a surface a ray may meet. On the
+    /// common view, one thread, they halve the time per ray (677 to 333 ns), and the 27 ms that making them takes are
+    /// won back after some 80,000 rays; but the scene then takes 2.3 MB instead of 31 KB.
     pub patches: bool,
     /// Whether rays leave something to the next: see [`LineOptions::coherence`].
     pub coherence: bool,
@@ -87,6 +87,19 @@ impl Viewed {
         }
         let seconds = begin.elapsed().as_secs_f64();
         Ok(Viewed { prepared, settings: *settings, picture: *picture, wishes, stages, view, seconds })
+    }
+
+    /// The same for another method that needs the same stages, and for another picture from the same camera: what was
+    /// made is copied and not made again.
+    ///
+    /// # Errors
+    /// A picture that cannot be traced as a view.
+    pub fn with(&self, method: Method, coherence: bool, picture: &View) -> Result<Self, LowerError> {
+        if let Some(reason) = self.prepared.no_view(picture) {
+            return Err(LowerError::NoView { method: method.name(), reason });
+        }
+        let (settings, wishes) = (Settings { method, ..self.settings }, Wishes { coherence, ..self.wishes });
+        Ok(Viewed { settings, wishes, picture: *picture, ..self.clone() })
     }
 
     /// Whether the rays of a scan line are traced by what they share.

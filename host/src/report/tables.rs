@@ -19,7 +19,7 @@ pub struct Report {
     pub size: [u32; 2],
     /// The precision of the methods.
     pub precision: Precision,
-    /// How often each method traced each scene.
+    /// How often each method traced each scene for Tables 1 and 2.
     pub repetitions: u32,
     /// The threads of the oracle: all times are of one thread.
     pub oracle_threads: u32,
@@ -57,8 +57,8 @@ pub struct SceneReport {
 pub struct Run {
     /// The method.
     pub method: Method,
-    /// Whether rays left something to the next. Without, what is gained over the original is owed to the order of search and its
-    /// early end.
+    /// Whether rays left something to the next. Without, what is gained over the original is owed to the order of
+    /// search and its early end.
     pub coherence: bool,
     /// Its times, of intersecting alone.
     pub times: Times,
@@ -128,6 +128,8 @@ pub struct RaysRun {
     pub coherent: Times,
     /// By what share that takes less time.
     pub gain: f64,
+    /// The paper's "intersection points" of both.
+    pub intersection_points: [u64; 2],
     /// The times of the original method asked for any hit, which is what shadows need.
     pub any_hit: Option<Times>,
 }
@@ -257,7 +259,8 @@ impl Report {
         let mut rows = Vec::new();
         for scene in &self.scenes {
             for (place, run) in scene.rays.iter().enumerate() {
-                let RaysRun { kind, rays, method, original, coherent, gain, any_hit } = run;
+                let RaysRun { kind, rays, method, original, coherent, gain, intersection_points, any_hit } = run;
+                let [points, of_coherent] = intersection_points.map(grouped);
                 rows.push(vec![
                     if place == 0 { scene.name.to_owned() } else { String::new() },
                     kind.name().to_owned(),
@@ -267,6 +270,8 @@ impl Report {
                     seconds(coherent.median),
                     percent(original.spread.max(coherent.spread)),
                     percent(*gain),
+                    points,
+                    of_coherent,
                     any_hit.as_ref().map_or(String::new(), |times| seconds(times.median)),
                 ]);
             }
@@ -280,6 +285,8 @@ impl Report {
             ("Coherent s", true),
             ("Spread %", true),
             ("Gain %", true),
+            ("Points", true),
+            ("Coherent", true),
             ("Original, any hit s", true),
         ];
         let title = format!("Table 4. Where coherence does not pay: {}", self.setting("rays one by one"));
@@ -288,17 +295,25 @@ impl Report {
 
     fn notes(&self) -> Vec<String> {
         let Report { repetitions, .. } = self;
+        let fewer =
+            self.scenes.iter().flat_map(|scene| &scene.sampling).map(|run| run.uniform.repetitions.len()).next();
+        let fewer = fewer.unwrap_or(0);
         let mut notes = vec![
             format!(
-                "Times are of intersecting alone, without preparation and shading: medians of {repetitions} repetitions, all \
-                 methods of a scene in turn; the spread is from the first to the third quartile. A gain is the median of the \
-                 repetitions' gains. The paper's times are of 512 × 512 pixels on a Pentium II of 300 MHz."
+                "Times are of intersecting alone, without preparation and shading: medians of {repetitions} \
+                 repetitions ({fewer} in Tables 3 and 4), all methods of a scene in turn; the spread is from the \
+                 first to the third quartile. A gain is the median of the repetitions' gains. The paper's times are \
+                 of 512 × 512 pixels, on a Pentium II of 300 MHz."
             ),
-            "\"Nothing kept\" is the method with its memory emptied before each ray: what it then gains over the original is \
-             owed to its order of search and its early end, and not to coherence."
+            "\"Nothing kept\" is the method with its memory emptied before each ray: what it then gains over the \
+             original is owed to its order of search and its early end, and not to coherence."
                 .to_owned(),
-            "Twice: intersection points in excess of the roots that the oracle finds on their ray. Wrong, missed and phantom \
-             pixels are by the oracle too."
+            "Tables 1 to 3 are of views: surfaces are searched front to back, by what each scan line can see, by the \
+             originals too. Table 4 is of any rays, by trees and grids: there the intersection points of primary rays \
+             are those to hold against the paper's."
+                .to_owned(),
+            "Twice: intersection points in excess of the roots that the oracle finds on their ray. Wrong, missed and \
+             phantom pixels are by the oracle too."
                 .to_owned(),
         ];
         for SceneReport { name, oracle, numerical, clipping, .. } in &self.scenes {
@@ -386,6 +401,7 @@ mod tests {
                 original: times(0.1),
                 coherent: times(0.11),
                 gain: -0.1,
+                intersection_points: [2000, 1000],
                 any_hit: Some(times(0.0512)),
             }],
         };
@@ -412,7 +428,7 @@ mod tests {
             "| Fig. 8 | 7594/32 | paper, original | 32.9 |  |  | 146,910 |  |  |  |  |",
             "| Fig. 8 | 7594/32 | paper, improved numerical | 33.9 | 34.7 |  | -1 |",
             "| teapot | 7584/32 | newton-coherent | 0.200 | 0.204 | 0 | -2 |",
-            "| teapot | shadow | 3 | clipping | 0.100 | 0.110 | 0 | -10 | 0.0512 |",
+            "| teapot | shadow | 3 | clipping | 0.100 | 0.110 | 0 | -10 | 2,000 | 1,000 | 0.0512 |",
         ] {
             assert!(text.contains(row), "{row}\n{text}");
         }

@@ -21,15 +21,16 @@ impl Times {
         Times { repetitions, median, spread }
     }
 
-    /// By what share of `original` these are less. The two were measured in turn: it is the median of what each repetition
-    /// says, since what else went on in the machine meanwhile disturbed both.
+    /// By what share of `original` these are less. The two were measured in turn: it is the median of what each
+    /// repetition says, since what else went on in the machine meanwhile disturbed both.
     pub fn gain_over(&self, original: &Times) -> f64 {
         let pairs = self.repetitions.iter().zip(&original.repetitions);
         1.0 - quantile(&pairs.map(|(own, other)| own / other).collect::<Vec<_>>(), 0.5)
     }
 }
 
-/// The value below which the share `share`, 0 to 1, of the numbers lies, straight between the two next to it; NaN of none.
+/// The value below which the share `share`, 0 to 1, of the numbers lies, straight between the two next to it; NaN of
+/// none.
 pub fn quantile(numbers: &[f64], share: f64) -> f64 {
     let mut sorted = numbers.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -21,7 +21,7 @@ use crate::scene::rays::RayLine;
 use crate::scene::sampling::ScanLine;
 
 /// Buckets of a scan line. Fewer make the list of spans be rebuilt from longer chains, more are cleared and passed for
-/// nothing: from 128 to 1,024 makes no difference to the common view that could be measured.
+/// nothing: on the common view 64 to 1,024 take the same time to 3 %.
 const BUCKETS: usize = 256;
 
 /// How the scan lines of a view are traced.
@@ -29,13 +29,13 @@ const BUCKETS: usize = 256;
 pub struct LineOptions {
     /// Whether lines are of patches, which the view then has to have; else of surfaces.
     pub patches: bool,
-    /// Whether rays leave something to the next. Without, a coherent method begins anew with every ray: what it then gains is
-    /// owed to its order of search alone.
+    /// Whether rays leave something to the next. Without, a coherent method begins anew with every ray: what it then
+    /// gains is owed to its order of search alone.
     pub coherence: bool,
 }
 
-/// The tracer of a method for the scan lines of one picture. Rays that are none of them, such as those that mirrors send on,
-/// are left to another tracer.
+/// The tracer of a method for the scan lines of one picture. Rays that are none of them, such as those that mirrors
+/// send on, are left to another tracer.
 pub struct ViewTracer<'m, M, P: Point> {
     scene: Scene<'m, P>,
     view: View<'m, P>,
@@ -47,8 +47,9 @@ pub struct ViewTracer<'m, M, P: Point> {
 }
 
 impl<'m, M: ViewMethod<P>, P: Point> ViewTracer<'m, M, P> {
-    /// The tracer of the method `M` for the scan lines of `picture`, of which `view` is the kernel's view. It asks the kernel
-    /// for the memory of each scan line, to lend the most. `others` traces all other rays; without it they are given up.
+    /// The tracer of the method `M` for the scan lines of `picture`, of which `view` is the kernel's view. It asks the
+    /// kernel for the memory of each scan line, to lend the most. `others` traces all other rays; without it they are
+    /// given up.
     pub fn new(
         (scene, view): (Scene<'m, P>, View<'m, P>),
         picture: &camera::View,
@@ -75,8 +76,8 @@ impl<'m, M: ViewMethod<P>, P: Point> ViewTracer<'m, M, P> {
 
     /// A scan line, ready for its rays.
     fn line<'l>(&self, line: &ScanLine, memory: LineMemory<'l, P::Scalar>) -> Result<Line<'l, P::Scalar>, LineNeeds> {
-        let xs = line.samples.iter().map(|sample| P::Scalar::from_f64(sample[0]));
-        let (first, last) = (xs.clone().next().unwrap_or(P::Scalar::ZERO), xs.last().unwrap_or(P::Scalar::ZERO));
+        let x = |sample: Option<&[f64; 2]>| sample.map_or(P::Scalar::ZERO, |&[x, _]| P::Scalar::from_f64(x));
+        let (first, last) = (x(line.samples.first()), x(line.samples.last()));
         let [a, b] = line.sy.map(P::Scalar::from_f64);
         let window = Window { x: [first, last], y: if a < b { [a, b] } else { [b, a] } };
         if self.options.patches {
@@ -98,8 +99,8 @@ fn lane_bytes<M: ViewMethod<P>, P: Point>(surfaces: usize, needs: &LineNeeds) ->
     }
 }
 
-/// The most that a lane of the method `M` can take, wherever a view looks from: with all surfaces or patches in one line, of
-/// which there are `spans`.
+/// The most that a lane of the method `M` can take, wherever a view looks from: with all surfaces or patches in one
+/// line, of which there are `spans`.
 pub fn most_lane_bytes<M: ViewMethod<P>, P: Point>(surfaces: usize, spans: usize) -> LaneBytes {
     let need = Need { needed: spans, given: 0 };
     lane_bytes::<M, P>(surfaces, &LineNeeds { spans: need, active: need, buckets: Need::default() })
@@ -210,7 +211,8 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
 }
 
 impl<M: ViewMethod<P>, P: Point> ViewLane<'_, M, P> {
-    /// The number of a new scan line; with a `step` of 1 each of its rays has the next one, and none is left to the next.
+    /// The number of a new scan line; with a `step` of 1 each of its rays has the next one, and none is left to the
+    /// next.
     fn begin_line(&mut self, line: &ScanLine, step: u32) -> u32 {
         let last = (line.samples.len() as u32).saturating_mul(step).saturating_add(1);
         // The method allows numbers up to 2^32 - 2; before they run out, the memory is emptied and they start again.
