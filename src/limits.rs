@@ -103,7 +103,7 @@ pub struct Extent {
     pub spans: u32,
     /// How often a method may walk the grid of one surface for one ray: 0, or 2 with a testing ray first.
     pub walks: u32,
-    /// Whether the method is a clipping method: these have no bound on clips but the budget.
+    /// Whether the method is a clipping method: these have no bound on clips and Newton iterations but the budget.
     pub clipped: bool,
 }
 
@@ -132,6 +132,7 @@ impl<S: Scalar> Limits<S> {
         let patches = extent.patches.saturating_mul(walks).min(self.patches);
         let clips = if extent.clipped { self.clip_steps } else { 0 };
         let starts = patches.saturating_mul(starts_per_patch).saturating_add(extent.surfaces);
+        let spans = u64::from(extent.spans);
         Work {
             surfaces_tested: extent.surfaces.min(self.surfaces),
             nodes_visited: extent.nodes.min(self.nodes),
@@ -141,10 +142,15 @@ impl<S: Scalar> Limits<S> {
                 .saturating_mul(extent.walks)
                 .saturating_add(extent.scene_voxels)
                 .min(self.voxels),
-            // Each of a line's spans may come into the list past all others, and is then looked at thrice.
-            spans_visited: extent.spans.saturating_mul(extent.spans.saturating_add(4)).min(self.spans),
+            // Each of a line's spans may come into the list past all before it, n (n − 1) / 2 times in all, and is looked at
+            // four times: for the list, for its surface, and in two searches.
+            spans_visited: (spans.saturating_mul(spans + 7) / 2).min(u64::from(self.spans)) as u32,
             newton_starts: starts,
-            newton_steps: starts.saturating_mul(self.newton_iterations).min(self.newton_steps),
+            newton_steps: if extent.clipped {
+                self.newton_steps
+            } else {
+                starts.saturating_mul(self.newton_iterations).min(self.newton_steps)
+            },
             critical: patches,
             unresolved: patches,
             intersection_points: starts.saturating_add(clips),
