@@ -3,15 +3,19 @@
 //! The models, the judge and the allowances are those of the suite `methods`. `PATCHRAY_RAYS=N` traces N rays per case
 //! instead of the default.
 
+mod agree;
 mod answers;
+mod budgets;
 mod cameras;
 #[path = "../common/mod.rs"]
 mod common;
 mod compare;
 mod image;
+mod memory;
 mod order;
 mod rooms;
 mod rubbish;
+mod soundness;
 
 #[path = "../methods/adapters.rs"]
 #[allow(dead_code, reason = "of the table of adapters only what allowances are looked up by")]

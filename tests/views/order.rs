@@ -19,7 +19,7 @@ use patchray_host::scene::trace::Precision;
 use rayon::prelude::*;
 
 /// Rays per case and camera, unless the environment says otherwise.
-const RAYS: usize = 250;
+const RAYS: usize = 130;
 
 /// In which order rays come, by line and place in it; and whether memory is filled with rubbish now and then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +53,8 @@ impl Course {
             }
             Course::Repeated => {
                 order.rotate_left(count / 2);
-                let thrice = |k: usize| if k % 3 == 0 { vec![k, k, k.saturating_sub(1), k] } else { vec![k, k] };
+                let thrice =
+                    |k: usize| if k.is_multiple_of(3) { vec![k, k, k.saturating_sub(1), k] } else { vec![k, k] };
                 order = order.into_iter().flat_map(thrice).collect();
             }
         }
