@@ -37,6 +37,7 @@ fn one_by_one<P: Kind>(prepared: &Prepared<P>, method: Method, rays: &[RayLine])
                 newton_coherent::closest(&scene, &patches, &grids, memory, line, ray, &all, &limits, view, work)
             }
             Method::Clipping => clipping::closest(&scene, ray, &all, &limits, room, work),
+            Method::NewtonPredicted | Method::ClippingPredicted => unreachable!("judged as what they improve"),
             Method::ClippingCoherent => {
                 clipping_coherent::closest(&scene, &patches, &grids, memory, line, ray, &all, &limits, room, work)
             }

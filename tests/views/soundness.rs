@@ -47,9 +47,9 @@ fn led<P: Kind>(
 ) -> Vec<(u32, [[P::Scalar; 2]; 2])> {
     let (limits, mut work) = (Limits { spans: u32::MAX, ..Limits::default() }, Work::default());
     let mut found = Vec::new();
-    let answer = line.closest(view, ray, &limits, &mut work, |surface, planes, range, along, work| {
+    let answer = line.closest(view, ray, &limits, &mut work, |surface, planes, range, along, limits, work| {
         planes_of(planes, surface.number);
-        along.ahead(planes, &range, &limits, work, |patch, _, _| {
+        along.ahead(planes, &range, limits, work, |patch, _, _| {
             found.push((surface.number, patch.domain().bounds()));
             Ok(P::Scalar::INFINITY)
         })?;
