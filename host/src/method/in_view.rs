@@ -33,7 +33,7 @@ pub trait ViewMethod<P: Point>: Send + Sync {
     /// The memory of these slots, one per surface, as a scan line finds it.
     fn memory(slots: &mut [Self::Slot]) -> Self::Memory<'_>;
 
-    /// The closest hit of a ray; `work` is set to what the call did. `scan_line` is a number that no earlier line with
+    /// The closest hit of a ray; `work` grows by what the call did. `scan_line` is a number that no earlier line with
     /// this memory had, at most 2³² − 2.
     fn closest(
         view: &View<'_, P>,

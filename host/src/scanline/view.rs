@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use patchray::arena::Need;
 use patchray::bernstein::Basis;
-use patchray::limits::{Limit, Limits};
+use patchray::limits::{Limit, Limits, Work};
 use patchray::line::{Line, LineMemory, LineNeeds, Span, Window};
 use patchray::point::Point;
 use patchray::ray::{Hit, Interval, RayError};
@@ -13,7 +13,7 @@ use patchray::scalar::Scalar;
 use patchray::scene::Scene;
 use patchray::view::View;
 
-use super::{BLOCK, Counting, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};
+use super::{BLOCK, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};
 use crate::lower::ORDER;
 use crate::method::in_view::ViewMethod;
 use crate::scene::camera;
@@ -185,20 +185,27 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
             ready.extend(block.iter().map(|sample| sample.map(P::Scalar::from_f64)));
             found.clear();
             let begin = Instant::now();
-            let mut counting = Counting::new(tally);
+            // Of a view the kernel goes on counting from ray to ray.
+            let mut work = Work::default();
+            let mut points = tally.points.as_mut();
             if let Some(line) = &mut of_line {
                 found.extend(ready.iter().map(|&place| {
                     number += step;
-                    let work = counting.next();
+                    let before = work.intersection_points;
                     let answer = view.ray(place, &ahead).map(|ray| {
-                        let answer = M::closest(view, line, &mut memory, number, &ray, limits, scratch, work);
+                        let answer = M::closest(view, line, &mut memory, number, &ray, limits, scratch, &mut work);
                         answer.map_err(Into::into)
                     });
+                    if let Some(points) = &mut points {
+                        points.push(work.intersection_points - before);
+                    }
                     Some(answer)
                 }));
             }
-            counting.end();
             tally.seconds += begin.elapsed().as_secs_f64();
+            for (sum, count) in tally.work.iter_mut().zip(work.counts()) {
+                *sum += u64::from(count);
+            }
             // Nothing was found only if a line needed more memory than any: then the rays were not traced.
             found.resize_with(block.len(), || None);
             for traced in found.drain(..) {
