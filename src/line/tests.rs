@@ -224,3 +224,38 @@ fn too_little_room_is_told_and_a_ray_of_another_line_is_no_miss() {
         });
     });
 }
+
+/// A caller who reads the counts of a whole line at its end must not have its budgets run out with the rays before.
+#[test]
+fn budgets_are_of_one_ray_though_the_counts_go_on() {
+    with_views(|view, patches| {
+        let window = Window { x: WHOLE, y: [0.0, 0.0] };
+        let mut room = Room::new(patches.len(), 1);
+        let mut line = Line::of_patches(view, window, Order::Surfaces, room.lend()).unwrap();
+        let ray = view.ray([0.01, 0.0], &Interval::ahead()).unwrap();
+        let mut ask = |limits: &Limits<f64>, work: &mut Work| {
+            line.closest(view, &ray, limits, work, |_, planes, range, along, limits, work| {
+                along.ahead(planes, &range, limits, work, |_, _, _| Ok(f64::INFINITY))?;
+                Ok(None)
+            })
+        };
+        let mut once = Work::default();
+        assert_eq!(ask(&Limits::default(), &mut once), Ok(None));
+        let mut again = Work::default();
+        assert_eq!(ask(&Limits::default(), &mut again), Ok(None));
+        if again.patches_tested == 0 {
+            return;
+        }
+        let enough = Limits {
+            spans: again.spans_visited,
+            patches: again.patches_tested,
+            surfaces: again.surfaces_tested,
+            ..Limits::default()
+        };
+        for _ in 0..3 {
+            assert_eq!(ask(&enough, &mut again), Ok(None));
+        }
+        let short = Limits { patches: enough.patches - 1, ..enough };
+        assert_eq!(ask(&short, &mut again).map_err(|gave_up| gave_up.limit), Err(Limit::Patches));
+    });
+}

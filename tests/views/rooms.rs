@@ -194,6 +194,8 @@ impl<P: Kind> Thread<P> {
         limits: &Limits<P::Scalar>,
     ) -> Answer<P::Scalar> {
         let Thread { newton, clips, remembered, followed, last, work } = self;
+        // The kernel goes on counting from ray to ray; the suites ask of each.
+        *work = Work::default();
         let (scratch, room) = (&mut newton.view(), &mut clips.view());
         let mut memory = Following { slots: followed, last: *last };
         let answer = match method {
