@@ -355,7 +355,11 @@ fn jet_unrolled<S: Scalar, P: Copy, T: Linear<S>, const ORDER: usize, const LESS
     const { assert!(ORDER * ORDER == N) }
     let (mut points, mut slopes) = ([T::ZERO; ORDER], [T::ZERO; ORDER]);
     for i in 0..ORDER {
-        [points[i], slopes[i]] = blend::<S, T, ORDER, LESS>(core::array::from_fn(|j| part(net[i * ORDER + j])), v);
+        let mut row = [T::ZERO; ORDER];
+        for j in 0..ORDER {
+            row[j] = part(net[i * ORDER + j]);
+        }
+        [points[i], slopes[i]] = blend::<S, T, ORDER, LESS>(row, v);
     }
     let ([point, du], [dv, _]) = (blend::<S, T, ORDER, LESS>(points, u), blend::<S, T, ORDER, LESS>(slopes, u));
     let degree = S::from_u32(LESS as u32);
