@@ -21,25 +21,30 @@ use rayon::prelude::*;
 const RAYS: usize = 250;
 
 /// Each ray by itself: by tree, by grids, or by the scene's grid alone.
-fn one_by_one<P: Kind>(prepared: &Prepared<P>, method: Method, rays: &[RayLine]) -> Vec<Seen<P::Scalar>> {
+pub(crate) fn one_by_one<P: Kind>(
+    prepared: &Prepared<P>,
+    method: Method,
+    rays: &[RayLine],
+    limits: &Limits<P::Scalar>,
+) -> Vec<Seen<P::Scalar>> {
     let (scene, patches, tree, grids) = (prepared.scene(), prepared.patches(), prepared.tree(), prepared.grids());
     let (mut scratch, mut clips) = (Scratch::<P, 16, 256>::new(), ClipScratch::<P, 16, 256, 64>::new());
     let mut memory = vec![Remembered::EMPTY; prepared.surfaces.len()];
-    let (limits, all, mut work) = (Limits::default(), Interval::ahead(), Work::default());
+    let (all, mut work) = (Interval::ahead(), Work::default());
     let trace = |ray: &RayLine| {
         let line = ray.scan_line as u32;
         let ray = scene.ray(ray.origin.map(P::Scalar::from_f64), ray.direction.map(P::Scalar::from_f64))?;
         let (ray, memory, work) = (&ray, &mut memory, &mut work);
         let (view, room) = (&mut scratch.view(), &mut clips.view());
         Ok(match method {
-            Method::Newton => newton::closest(&scene, &patches, &tree, ray, &all, &limits, view, work),
+            Method::Newton => newton::closest(&scene, &patches, &tree, ray, &all, limits, view, work),
             Method::NewtonCoherent => {
-                newton_coherent::closest(&scene, &patches, &grids, memory, line, ray, &all, &limits, view, work)
+                newton_coherent::closest(&scene, &patches, &grids, memory, line, ray, &all, limits, view, work)
             }
-            Method::Clipping => clipping::closest(&scene, ray, &all, &limits, room, work),
+            Method::Clipping => clipping::closest(&scene, ray, &all, limits, room, work),
             Method::NewtonPredicted | Method::ClippingPredicted => unreachable!("judged as what they improve"),
             Method::ClippingCoherent => {
-                clipping_coherent::closest(&scene, &patches, &grids, memory, line, ray, &all, &limits, room, work)
+                clipping_coherent::closest(&scene, &patches, &grids, memory, line, ray, &all, limits, room, work)
             }
         })
     };
@@ -57,7 +62,7 @@ fn agree<P: Kind>(case: &Case, precision: Precision) -> Vec<String> {
         let rays = ray_lines(&named.camera, &rows);
         let mut failures = Vec::new();
         for method in InView::ALL {
-            let alone = one_by_one(&prepared, method.judged_as(), &rays);
+            let alone = one_by_one(&prepared, method.judged_as(), &rays, &Limits::default());
             let in_view = trace(&prepared, &scaled(&named.camera, 1.0), &rows, method, &Limits::default());
             for ((ray, one), other) in rays.iter().zip(&alone).zip(&in_view) {
                 if judge.differ(&prepared, method, ray, [one, other]) {

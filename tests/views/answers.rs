@@ -21,7 +21,7 @@ use patchray_host::scene::trace::Precision;
 use rayon::prelude::*;
 
 /// Rays per case, over all cameras, unless the environment says otherwise.
-const RAYS: usize = 3_000;
+const RAYS: usize = 2_400;
 
 /// The default.
 const FLATNESS: f64 = 6.6e-4;
@@ -225,5 +225,5 @@ fn every_method_from_inside() {
 #[test]
 fn every_method_in_any_unit() {
     let few = |surfaces: &[ModelSurface]| cameras(surfaces).into_iter().step_by(3).collect();
-    suite(few, 0.005, &[1e-20, 3e7, 1e20]);
+    suite(few, 0.005, &[1e-20, 1e20]);
 }

@@ -63,7 +63,7 @@ pub(crate) fn trace<P: Kind>(
     let mut room = ViewRoom::for_view(prepared, method.has_patches(), camera).expect("the camera is a good one");
     let view = room.build(prepared, method.has_patches(), camera).expect("what was asked for is enough");
     let mut thread = Thread::new(prepared.surfaces.len());
-    let mut lines = [1, 9, 64, 700].map(|buckets| LineRoom::for_any(prepared, buckets));
+    let mut lines = [20, 64, 300, 700].map(|buckets| LineRoom::for_any(prepared, buckets));
     let mut answers = Vec::new();
     for (number, row) in rows.iter().enumerate() {
         let window = Window { x: [-1.0, 1.0], y: row.y };

@@ -10,6 +10,7 @@ mod cameras;
 #[path = "../common/mod.rs"]
 mod common;
 mod compare;
+mod hostile;
 mod image;
 mod memory;
 mod order;
