@@ -81,8 +81,8 @@ pub struct LineMemory<'m, S> {
     pub spans: &'m mut [Span<S>],
     /// As many slots as `spans` holds.
     pub active: &'m mut [u32],
-    /// Buckets, at least one: any number will do. About as many as there are spans is best; fewer make the list be rebuilt
-    /// from longer chains, more are cleared and passed for nothing.
+    /// Buckets, at least one. About as many as there are spans is best; fewer make the list be rebuilt from longer chains, which
+    /// counts against [`Limits::spans`], more are cleared and passed for nothing.
     pub buckets: &'m mut [u32],
 }
 
@@ -110,6 +110,8 @@ pub struct Window<S> {
 /// A scan line of a view, ready for its rays.
 #[derive(Debug)]
 pub struct Line<'m, S> {
+    /// Whether spans are of patches, not of whole surfaces.
+    patches: bool,
     window: Window<S>,
     spans: &'m [Span<S>],
     buckets: &'m [u32],
@@ -131,7 +133,7 @@ impl<'m, S: Scalar> Line<'m, S> {
         window: Window<S>,
         memory: LineMemory<'m, S>,
     ) -> Result<Self, LineNeeds> {
-        Line::fill(window, Order::Surfaces, memory, |filling| {
+        Line::fill(false, window, Order::Surfaces, memory, |filling| {
             for (surface, sight) in (0_u32..).zip(view.surfaces()) {
                 filling.add(sight, sight.near, surface, 0);
             }
@@ -146,7 +148,7 @@ impl<'m, S: Scalar> Line<'m, S> {
         memory: LineMemory<'m, S>,
     ) -> Result<Self, LineNeeds> {
         let Window { y: [low, high], .. } = window;
-        Line::fill(window, order, memory, |filling| {
+        Line::fill(true, window, order, memory, |filling| {
             for (surface, sight) in (0_u32..).zip(view.surfaces()) {
                 let [from, to] = sight.outline.rows();
                 if !(from <= high && low <= to) {
@@ -168,6 +170,7 @@ impl<'m, S: Scalar> Line<'m, S> {
 
     #[inline(always)]
     fn fill(
+        patches: bool,
         window: Window<S>,
         order: Order,
         memory: LineMemory<'m, S>,
@@ -189,7 +192,7 @@ impl<'m, S: Scalar> Line<'m, S> {
         if !(needs.spans.met() && needs.active.met() && needs.buckets.met()) {
             return Err(needs);
         }
-        Ok(Line { window, spans: spans.finish(), buckets, active, count: 0, order, per_unit, bucket: None })
+        Ok(Line { patches, window, spans: spans.finish(), buckets, active, count: 0, order, per_unit, bucket: None })
     }
 
     /// Brings the list to a ray's place in the line.
@@ -326,8 +329,12 @@ impl<'m, S: Scalar> Line<'m, S> {
         work: &mut Work,
     ) -> Result<Option<InLine<'l, S>>, Limit> {
         self.go_to(ray, limits.spans.saturating_add(work.spans_visited), work)?;
-        let mut nearby =
-            InLine { spans: self.spans, list: self.active.get(..self.count).unwrap_or(&[]), x: ray.place[0], patches };
+        let mut nearby = InLine {
+            spans: self.spans,
+            list: self.active.get(..self.count).unwrap_or(&[]),
+            x: ray.place[0],
+            patches: self.patches.then_some(patches),
+        };
         nearby.skip();
         Ok(if nearby.list.is_empty() { None } else { Some(nearby) })
     }
@@ -339,8 +346,8 @@ pub struct InLine<'l, S> {
     spans: &'l [Span<S>],
     list: &'l [u32],
     x: S,
-    /// The patches of the view.
-    patches: &'l [Patch<S>],
+    /// The patches of the view, if the spans are of patches.
+    patches: Option<&'l [Patch<S>]>,
 }
 
 impl<'l, S: Scalar> InLine<'l, S> {
@@ -393,6 +400,7 @@ impl<'l, S: Scalar> InLine<'l, S> {
         skip: impl Fn(u32, &Patch<S>) -> bool,
         mut visit: impl FnMut(u32, &Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
     ) -> Result<(), Limit> {
+        let patches = self.patches.ok_or(Limit::Line)?;
         for &number in self.list {
             spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
             let span = self.spans.get(number as usize).ok_or(Limit::Slot)?;
@@ -402,7 +410,7 @@ impl<'l, S: Scalar> InLine<'l, S> {
             if !(span.near <= farthest) {
                 break;
             }
-            let patch = self.patches.get(span.patch as usize).ok_or(Limit::Slot)?;
+            let patch = patches.get(span.patch as usize).ok_or(Limit::Slot)?;
             if skip(span.surface, patch) {
                 continue;
             }
@@ -412,6 +420,11 @@ impl<'l, S: Scalar> InLine<'l, S> {
             }
         }
         Ok(())
+    }
+
+    /// Whether the spans are of patches.
+    pub(crate) fn has_patches(&self) -> bool {
+        self.patches.is_some()
     }
 
     /// Whether the list holds a span of the surface around the ray.

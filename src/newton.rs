@@ -159,8 +159,8 @@ impl<S: Scalar> Alone<S> {
     /// Of a root on a surface, near which `local` holds.
     #[inline(always)]
     pub(crate) fn new(root: &Root<S>, local: &Local<S>, bend: [S; 3]) -> Self {
-        let root = [root.u, root.v];
-        let off = [0, 1].map(|k| (root[k] - local.at[k]).abs());
+        let (root, [u, v]) = ([root.u, root.v], local.at);
+        let off = [(root[0] - u).abs(), (root[1] - v).abs()];
         // A Jacobian that may be all rounding says nothing.
         let one = if local.may_be_singular() { S::INFINITY } else { S::ONE };
         Alone { root, off, inverse: local.inverse_bounds(one), bend }

@@ -93,7 +93,7 @@ pub enum ViewError {
     Ray(RayError),
     /// The camera's three vectors lie in a plane, or all but, so that an image has no extent.
     Flat,
-    /// The eye is farther from the scene's origin than eight times its largest |coordinate|: near to parallel, its rays
+    /// The eye's largest |coordinate| is more than eight units of the frame, eight to sixteen times that of the scene: near to parallel, its rays
     /// would lose digits. They can be traced one by one.
     Far,
     /// More patches than 32 bits can count.
@@ -190,8 +190,8 @@ impl<'m, P: Point> View<'m, P> {
                 points.push(turned);
                 let near = turned.position()[2] - middle - Frame::<P::Scalar>::padding();
                 sight.near = sight.near.lesser(near);
-                sight.outline = lens.grown(sight.outline, point.position());
             }
+            sight.outline = lens.outline(net.points().iter().map(|point| point.position()));
             surfaces.push(sight);
         }
         let mut turned = Arena::new(memory.patches);
@@ -206,7 +206,7 @@ impl<'m, P: Point> View<'m, P> {
                     for patch in run {
                         let bounds = patch.bounds().turned(&lens.turn);
                         let corners = patch.bounds().corners();
-                        let outline = corners.into_iter().fold(Outline::NOWHERE, |all, corner| lens.grown(all, corner));
+                        let outline = lens.outline(corners.into_iter());
                         let [y0, y1] = outline.rows();
                         rows = [rows[0].lesser(y0), rows[1].greater(y1)];
                         turned.push(Patch { bounds, ..*patch });
@@ -244,11 +244,6 @@ impl<'m, P: Point> View<'m, P> {
     #[inline]
     pub(crate) fn patches(&self) -> &'m [Patch<P::Scalar>] {
         self.patches.all()
-    }
-
-    /// Whether it was made with patches.
-    pub(crate) fn has_patches(&self) -> bool {
-        !self.first_runs.is_empty()
     }
 
     /// What is seen of the surfaces.
@@ -321,6 +316,8 @@ struct Lens<S> {
     along: [S; 3],
     /// The larger length of `across`, and that of `along`.
     lengths: [S; 2],
+    /// By which powers of two x and y are then to be multiplied.
+    exponents: [i32; 2],
 }
 
 /// Below this share of their lengths' product, the volume of the camera's vectors is taken for 0: it would be known to a few
@@ -339,11 +336,11 @@ impl<S: Scalar> Lens<S> {
         if !(S::Vec3::from_array(eye).largest() <= S::from_u32(NEAR)) {
             return Err(ViewError::Far);
         }
-        // By a common power of two, so that products neither overflow nor vanish.
-        let vectors = [forward, right, up].map(S::Vec3::from_array);
-        let largest = vectors[0].largest().greater(vectors[1].largest()).greater(vectors[2].largest());
-        let [f, r, u] = [forward, right, up]
-            .map(|vector| S::Vec3::from_array(vector.map(|c| c.times_power_of_two(-largest.binary_exponent()))));
+        // Each by a power of two of its own, so that products neither overflow nor vanish.
+        let exponents = [forward, right, up].map(|vector| S::Vec3::from_array(vector).largest().binary_exponent());
+        let scaled =
+            |vector: [S; 3], exponent: i32| S::Vec3::from_array(vector.map(|c| c.times_power_of_two(-exponent)));
+        let (f, r, u) = (scaled(forward, exponents[0]), scaled(right, exponents[1]), scaled(up, exponents[2]));
         let volume = f.dot(r.cross(u));
         let size = f.length() * r.length() * u.length();
         if !(volume.abs() > size * S::EPSILON * S::from_u32(LEAST_VOLUME)) {
@@ -370,24 +367,36 @@ impl<S: Scalar> Lens<S> {
             across: across.map(Vector3::to_array),
             along: along.to_array(),
             lengths: [across[0].length().greater(across[1].length()), along.length()],
+            exponents: [exponents[0] - exponents[1], exponents[0] - exponents[2]],
         })
     }
 
-    /// The outline grown to where a point of the frame is seen, and all points as near to it as boxes are padded.
-    fn grown(&self, outline: Outline<S>, point: [S; 3]) -> Outline<S> {
-        let from_eye = S::Vec3::from_array(core::array::from_fn(|k| point[k] - self.eye[k]));
-        let [across, along] = self.lengths;
-        // What the padding and the rounding of these sums may come to.
-        let off = Frame::<S>::padding() * (S::ONE + from_eye.length());
-        let depth = S::Vec3::from_array(self.along).dot(from_eye);
-        // Nor is a point beside the eye or behind it seen anywhere: but what reaches from before the eye to there may be seen
-        // out to the edge.
-        if !(depth > off * along * S::TWO) {
-            return Outline::EVERYWHERE;
+    /// Where what these points of the frame enclose is seen, and all that is as near to them as boxes are padded.
+    fn outline(&self, points: impl Iterator<Item = [S; 3]>) -> Outline<S> {
+        let (mut outline, mut before, mut behind) = (Outline::NOWHERE, false, false);
+        for point in points {
+            let from_eye = S::Vec3::from_array(core::array::from_fn(|k| point[k] - self.eye[k]));
+            let [across, along] = self.lengths;
+            // What the padding and the rounding of these sums may come to.
+            let off = Frame::<S>::padding() * (S::ONE + from_eye.length());
+            let depth = S::Vec3::from_array(self.along).dot(from_eye);
+            let least = off * along * S::TWO;
+            if depth > least {
+                let [x, y] = self.across.map(|row| S::Vec3::from_array(row).dot(from_eye) / depth);
+                let margin = off * S::TWO * (across + x.abs().greater(y.abs()) * along) / depth;
+                let [to_x, to_y] = self.exponents;
+                let place = [x.times_power_of_two(to_x), y.times_power_of_two(to_y)];
+                let margin = margin.times_power_of_two(to_x).greater(margin.times_power_of_two(to_y));
+                outline = outline.with(place, margin);
+                before = true;
+            } else if depth < -least {
+                behind = true;
+            } else {
+                (before, behind) = (true, true);
+            }
         }
-        let [x, y] = self.across.map(|row| S::Vec3::from_array(row).dot(from_eye) / depth);
-        let farther = x.abs().greater(y.abs());
-        outline.with([x, y], off * S::TWO * (across + farther * along) / depth)
+        // Rays look ahead only. What reaches from before the eye to behind it may be seen out to any edge.
+        if before && behind { Outline::EVERYWHERE } else { outline }
     }
 }
 

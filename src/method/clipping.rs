@@ -53,7 +53,7 @@ pub fn closest_in_view<P: Point>(
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
         let mut region = Some(Region::WHOLE);
-        if view.has_patches() {
+        if along.has_patches() {
             region = None;
             along.ahead(planes, &range, limits, work, |patch, _, _| {
                 let domain = Region { sides: patch.domain().bounds(), ..Region::WHOLE };

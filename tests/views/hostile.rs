@@ -73,7 +73,6 @@ fn vectors_of_any_length_make_the_same_image() {
 }
 
 #[test]
-#[ignore = "the product of two such short vectors has few digits left, and patches are looked for where they are not"]
 fn nor_do_very_short_ones_lose_hits() {
     for case in [case("teapot"), case("bumpy 5 x 5")] {
         any_length::<Plain<f32>>(&case, &[-66, -69, -72, -74]);
@@ -257,7 +256,6 @@ fn intervals_are_kept_to() {
 
 /// From inside, at the flatness that is the default, within the budgets that are.
 #[test]
-#[ignore = "patches behind the eye are taken for seen everywhere, and putting thousands of them in order passes the budget on spans"]
 fn an_eye_inside_a_model_of_many_patches_is_answered() {
     let case = case("teapot");
     let prepared = Prepared::<Plain<f64>>::of(&case.model);
@@ -271,7 +269,6 @@ fn an_eye_inside_a_model_of_many_patches_is_answered() {
 
 /// A line that is not of the kind that a method takes: an error, or the right answer all the same.
 #[test]
-#[ignore = "in a view with patches, a line of surfaces names patch 0 for each: wrong answers, and no error"]
 fn lines_of_another_kind_are_refused_or_answered() {
     let case = case("teapot");
     let prepared = coarse::<Plain<f64>>(&case);
