@@ -193,10 +193,15 @@ fn rays_in_any_order_are_led_to_the_same_patches_in_the_same_order() {
 
 #[test]
 fn too_little_room_is_told_and_a_ray_of_another_line_is_no_miss() {
+    let mut tried = 0;
     with_views(|view, patches| {
         let window = Window { x: WHOLE, y: [-0.3, 0.3] };
         let needs = Line::of_patches(view, window, Order::Depth, Room::new(0, 0).lend()).unwrap_err();
-        assert!((1..=patches.len()).contains(&needs.spans.needed));
+        assert!(needs.spans.needed <= patches.len());
+        if needs.spans.needed == 0 {
+            return;
+        }
+        tried += 1;
         assert_eq!((needs.active.needed, needs.buckets.needed), (needs.spans.needed, 1));
         let mut room = Room::new(needs.spans.needed, 1);
         let mut line = Line::of_patches(view, window, Order::Depth, room.lend()).unwrap();
@@ -220,6 +225,7 @@ fn too_little_room_is_told_and_a_ray_of_another_line_is_no_miss() {
             met(view, &mut line, [0.01, 0.0]).len()
         });
     });
+    assert!(tried > 0);
 }
 
 /// A caller who reads the counts of a whole line at its end must not have its budgets run out with the rays before.
