@@ -1,13 +1,12 @@
 //! The paper's four scenes: what `fixtures/scenes` holds of them, and how near it comes to the figures of its Table 1.
 
-use indicatif::ProgressBar;
-use patchray_host::cmd::render::draw;
-use patchray_host::lower::Stages;
-use patchray_host::prepared::Prepared;
+use patchray_host::scanline::{Tally, rays_of};
+use patchray_host::scene::camera::View;
 use patchray_host::scene::error::OnInvalid;
 use patchray_host::scene::file::{self, Scene};
 use patchray_host::scene::trace::{Method, Precision};
 use patchray_host::settings::{Flags, Settings};
+use patchray_host::viewed::{Viewed, Wishes};
 use std::path::Path;
 
 /// A scene of the paper: its file's name, and its row of Table 1 as far as it is about the original algorithm.
@@ -30,11 +29,18 @@ fn scene(name: &str) -> Scene {
     file::read(Path::new(&path), OnInvalid::Refuse).expect("it is valid")
 }
 
-/// The scene ready for the original numerical method, at its own flatness.
-fn prepared(scene: &Scene) -> (Prepared, Settings) {
+/// The picture that the tables measure.
+fn picture(scene: &Scene) -> View {
+    scene.description.camera.view([512, 512])
+}
+
+/// The scene ready for that picture by the original numerical method, at its own flatness.
+fn viewed(scene: &Scene) -> Viewed {
     let flags = Flags { method: Some(Method::Newton), precision: Some(Precision::F64), ..Flags::default() };
     let settings = Settings::of_scene(&flags, &scene.description.trace, &scene.source).expect("it is valid");
-    (Prepared::build(&scene.model, Stages::of(Method::Newton), &settings).expect("there is memory"), settings)
+    let viewed = Viewed::build(&scene.model, &settings, &picture(scene), Wishes::PRIMARY).expect("there is memory");
+    assert!(viewed.has_view());
+    viewed
 }
 
 /// Asserts that a figure is the paper's to 10 %.
@@ -50,7 +56,9 @@ fn surfaces_and_patches_are_the_papers() {
         // The tables' scenes are polynomial, and bicubic throughout.
         let bicubic = scene.model.surfaces.iter().all(|s| !s.rational && (s.degree_u, s.degree_v) == (3, 3));
         assert!(bicubic, "{name}");
-        assert_near(name, prepared(&scene).0.patches(), patches);
+        let mut viewed = viewed(&scene);
+        let (_, used) = viewed.tracer().expect("there is memory");
+        assert_near(name, used.patches, patches);
     }
 }
 
@@ -58,11 +66,15 @@ fn surfaces_and_patches_are_the_papers() {
 fn intersection_points_are_the_papers() {
     for Row { name, intersection_points, .. } in TABLE_1 {
         let scene = scene(name);
-        let (prepared, settings) = prepared(&scene);
-        let view = scene.description.camera.view([512, 512]);
-        let drawn = draw(prepared.tracer(&settings).as_ref(), &view, &scene.appearance, &ProgressBar::hidden());
-        assert_eq!((drawn.tally.rays, drawn.tally.gave_up_in_all()), (512 * 512, 0), "{name}");
-        assert_near(name, drawn.tally.count("intersection_points"), intersection_points);
+        let mut viewed = viewed(&scene);
+        let (tracer, _) = viewed.tracer().expect("there is memory");
+        let (mut lane, mut tally, picture) = (tracer.lane(), Tally::default(), picture(&scene));
+        for line in 0..picture.scan_lines() {
+            let samples = picture.scan_line(line);
+            lane.trace_line(&samples, &rays_of(&picture, line, &samples), &mut Vec::new(), &mut tally);
+        }
+        assert_eq!((tally.rays, tally.gave_up_in_all()), (512 * 512, 0), "{name}");
+        assert_near(name, tally.count("intersection_points"), intersection_points);
     }
 }
 
