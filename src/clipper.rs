@@ -84,23 +84,31 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
         })
     }
 
-    /// All points where the ray's line meets a region of the surface, to `found`, with the surface there to first order. The
-    /// net has to be projected.
+    /// The surface at (u, v) to first order. The net has to be projected.
+    pub(crate) fn local(&mut self, at: [P::Scalar; 2], work: &mut Work) -> Result<Local<P::Scalar>, Limit> {
+        let Clipper { surface: Surface { net, .. }, limits, room, .. } = self;
+        let ClipRoom { whole, basis, .. } = &mut **room;
+        spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
+        let whole = whole.get(..net.points().len()).ok_or(Limit::Scratch)?;
+        Local::at(at, net.degrees(), whole, basis)
+    }
+
+    /// All points where the ray's line meets a region of the surface, to `found`. The net has to be projected.
     #[inline(always)]
     pub(crate) fn roots_within(
         &mut self,
         region: Region<P::Scalar>,
         work: &mut Work,
-        mut found: impl FnMut(Root<P::Scalar>, Local<P::Scalar>, &mut Work),
+        mut found: impl FnMut(Root<P::Scalar>, &mut Work),
     ) -> Result<(), Limit> {
         match self.single(region, work)? {
             Single::Nothing => Ok(()),
-            Single::Root(root, local) => {
-                found(root, local, work);
+            Single::Root(root, _) => {
+                found(root, work);
                 Ok(())
             }
-            Single::Unproved => self.clipped(Order::Any, Some(region), work, |root, local, _, work| {
-                found(root, local, work);
+            Single::Unproved => self.clipped(Order::Any, Some(region), work, |root, _, work| {
+                found(root, work);
                 Ok(true)
             }),
         }
@@ -113,10 +121,10 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
         &mut self,
         order: Order<P::Scalar>,
         work: &mut Work,
-        mut found: impl FnMut(Root<P::Scalar>, bool, &mut Work) -> Result<bool, Limit>,
+        found: impl FnMut(Root<P::Scalar>, bool, &mut Work) -> Result<bool, Limit>,
     ) -> Result<(), Limit> {
         self.project()?;
-        self.clipped(order, None, work, |root, _, regions_wait, work| found(root, regions_wait, work))
+        self.clipped(order, None, work, found)
     }
 
     /// [`Clipper::roots`] of a region of the surface, or all of it, from the projected net.
@@ -126,7 +134,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
         mut order: Order<P::Scalar>,
         region: Option<Region<P::Scalar>>,
         work: &mut Work,
-        mut found: impl FnMut(Root<P::Scalar>, Local<P::Scalar>, bool, &mut Work) -> Result<bool, Limit>,
+        mut found: impl FnMut(Root<P::Scalar>, bool, &mut Work) -> Result<bool, Limit>,
     ) -> Result<(), Limit> {
         let Clipper { surface, planes, limits, room } = self;
         let ClipRoom { whole, part, pending, roots, basis } = &mut **room;
@@ -194,7 +202,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                 let root = place.root(&surface.net, planes, limits, basis)?;
                 let seen = Seen { surface, planes, whole, roots, allowed: allowed(tolerance, part.error) };
                 if !seen.holds(&root, limits, basis)? {
-                    if !found(root, place.local, !pending.is_empty(), work)? {
+                    if !found(root, !pending.is_empty(), work)? {
                         return Ok(());
                     }
                     let _ = roots.push(root);

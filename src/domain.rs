@@ -43,23 +43,16 @@ impl Domain {
     }
 
     /// `[u0, u1]` and `[v0, v1]`, exact.
-    pub fn bounds<S: Scalar>(self) -> [[S; 2]; 2] {
-        [self.u, self.v & !ROUGH].map(|index| {
-            let scale = S::ONE.times_power_of_two(-(level(index) as i32));
-            let first = u32::from(index) - (1 << level(index));
-            [S::from_u32(first) * scale, S::from_u32(first + 1) * scale]
-        })
-    }
-
-    /// `[u0, u1]` and `[v0, v1]`, exact; for inner loops.
     #[inline(always)]
-    pub(crate) fn sides<S: Scalar>(self) -> [[S; 2]; 2] {
-        [self.u, self.v & !ROUGH].map(|index| {
+    pub fn bounds<S: Scalar>(self) -> [[S; 2]; 2] {
+        let side = |index: u16| {
             let width = width::<S>(index);
             // Index i of 2^level, held as 2^level + i.
             let first = S::from_u32(u32::from(index)) * width - S::ONE;
             [first, first + width]
-        })
+        };
+        // Not by `map`, which a compiler may leave out of line.
+        [side(self.u), side(self.v & !ROUGH)]
     }
 
     /// Whether it holds (u, v); exactly one domain of a subdivision does, for any (u, v) in [0, 1]².

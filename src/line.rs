@@ -275,7 +275,7 @@ impl<'m, S: Scalar> Line<'m, S> {
         ray: &ViewRay<S>,
         limits: &Limits<S>,
         work: &mut Work,
-        mut search: impl FnMut(
+        search: impl FnMut(
             &Surface<'v, P>,
             &Planes<S>,
             DepthRange<S>,
@@ -285,37 +285,10 @@ impl<'m, S: Scalar> Line<'m, S> {
         ) -> Result<Option<Root<S>>, Limit>,
     ) -> Result<Option<Hit<S>>, GaveUp<S>> {
         let before = work.spans_visited;
-        let nearby = match self.nearby(view.patches(), ray, limits, work) {
-            Ok(Some(nearby)) => nearby,
-            Ok(None) => return Ok(None),
-            Err(limit) => return Err(GaveUp { limit, best: None }),
-        };
-        let limits = &limits.beyond(work, before);
-        let Facing { planes, range, .. } = &view.facing(ray);
-        let mut best: Option<(Root<S>, u32)> = None;
-        let ended = nearby.surfaces(limits, work, |number, near, in_line, work| {
-            let farthest = best.map_or(range.max, |(root, _)| root.depth);
-            if !(near <= farthest) {
-                return Ok(());
-            }
-            spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
-            let surface = view.surface(number as usize).ok_or(Limit::Slot)?;
-            let within = DepthRange { min: range.min, max: farthest };
-            if let Some(root) = search(&surface, planes, within, in_line, limits, work)? {
-                // As in `Scene::closest`.
-                let closer = |(old, other): (Root<S>, u32)| {
-                    root.depth < old.depth || (root.depth == old.depth && number < other)
-                };
-                if best.is_none_or(closer) {
-                    best = Some((root, number));
-                }
-            }
-            Ok(())
-        });
-        let best = best.map(|(root, surface)| root.hit(surface, planes.t(root.depth)));
-        match ended {
-            Ok(()) => Ok(best),
-            Err(limit) => Err(GaveUp { limit, best }),
+        match self.nearby(view.patches(), ray, limits, work) {
+            Ok(Some(nearby)) => nearby.closest(view, ray, &limits.beyond(work, before), work, search),
+            Ok(None) => Ok(None),
+            Err(limit) => Err(GaveUp { limit, best: None }),
         }
     }
 
@@ -351,6 +324,53 @@ pub struct InLine<'l, S> {
 }
 
 impl<'l, S: Scalar> InLine<'l, S> {
+    /// See [`Line::closest`]. Of its own, so that a ray that can meet nothing costs no more than to see that.
+    #[inline(never)]
+    fn closest<'v, P: Point<Scalar = S>>(
+        self,
+        view: &View<'v, P>,
+        ray: &ViewRay<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut search: impl FnMut(
+            &Surface<'v, P>,
+            &Planes<S>,
+            DepthRange<S>,
+            &InLine<'_, S>,
+            &Limits<S>,
+            &mut Work,
+        ) -> Result<Option<Root<S>>, Limit>,
+    ) -> Result<Option<Hit<S>>, GaveUp<S>> {
+        let Facing { planes, range, .. } = &view.facing(ray);
+        let mut best: Option<(Root<S>, u32)> = None;
+        let ended = self.surfaces(limits, work, |number, near, in_line, work| {
+            let farthest = best.map_or(range.max, |(root, _)| root.depth);
+            if !(near <= farthest) {
+                return Ok(());
+            }
+            spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
+            let Some(surface) = view.surface(number as usize) else {
+                return Err(Limit::Slot);
+            };
+            let within = DepthRange { min: range.min, max: farthest };
+            if let Some(root) = search(&surface, planes, within, in_line, limits, work)? {
+                // As in `Scene::closest`.
+                let closer = |(old, other): (Root<S>, u32)| {
+                    root.depth < old.depth || (root.depth == old.depth && number < other)
+                };
+                if best.is_none_or(closer) {
+                    best = Some((root, number));
+                }
+            }
+            Ok(())
+        });
+        let best = best.map(|(root, surface)| root.hit(surface, planes.t(root.depth)));
+        match ended {
+            Ok(()) => Ok(best),
+            Err(limit) => Err(GaveUp { limit, best }),
+        }
+    }
+
     /// Skips the first ones that do not hold the ray.
     #[inline(always)]
     fn skip(&mut self) {

@@ -170,7 +170,9 @@ impl<S: Scalar> Alone<S> {
     #[inline(always)]
     pub(crate) fn within(&self, [[u0, u1], [v0, v1]]: [[S; 2]; 2]) -> bool {
         let Alone { root: [u, v], off: [off_u, off_v], inverse: [a, b], bend: [uu, uv, vv] } = *self;
-        let (far_u, far_v) = ((u - u0).greater(u1 - u), (v - v0).greater(v1 - v));
+        // The farther of two sides, without a branch that nothing could foretell.
+        let farther = |t: S, low: S, high: S| (t - (low + high) * S::HALF).abs() + (high - low) * S::HALF;
+        let (far_u, far_v) = (farther(u, u0, u1), farther(v, v0, v1));
         let alpha = uu * (far_u + off_u + off_u) + uv * off_v;
         let beta = uv * (far_u + off_u) + vv * (far_v + off_v + off_v);
         a * alpha + b * beta < S::from_f64(0.999)

@@ -43,6 +43,7 @@ pub fn closest<P: Point>(
 ///
 /// `line` is the ray's, one of surfaces, or of patches in [`Order::Surfaces`](crate::line::Order::Surfaces) where there are
 /// any: then of each surface no more is clipped than the smallest region that holds all patches that the ray meets.
+#[inline]
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
@@ -65,7 +66,7 @@ pub fn closest_in_view<P: Point>(
         if let Some(region) = region {
             let mut clipper = Clipper { surface, planes, limits, room };
             clipper.project()?;
-            clipper.roots_within(region, work, |root, _, work| {
+            clipper.roots_within(region, work, |root, work| {
                 keep_closest(&mut best, root, planes, &mut work.intersection_points);
             })?;
         }

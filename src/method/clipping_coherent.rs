@@ -60,6 +60,7 @@ pub fn closest<P: Point>(
 /// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::line::Order::Surfaces); it leads the testing ray, and no
 /// grid is walked. All else is as for [`closest`],
 /// but `work` grows by what the call did.
+#[inline]
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,

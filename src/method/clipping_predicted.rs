@@ -14,7 +14,7 @@
 //!
 //! Source: the paper's section "An Improvement of Bézier Clipping".
 
-use super::follow::{Best, Following};
+use super::follow::{Best, Followed, Following};
 use crate::clipper::{ClipRoom, Clipper, Single};
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::{InLine, Line};
@@ -38,6 +38,7 @@ const WINDOW: f64 = 0.002;
 /// `line` is the ray's, one of patches in [`Order::Depth`](crate::line::Order::Depth). `memory` is lent, and to be left alone
 /// between rays of one scan line. `scan_line` numbers the line: a number that no earlier line with this memory had begins
 /// with no coherence (at most 2³² − 2). `work` grows by what the call did.
+#[inline]
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
@@ -50,16 +51,32 @@ pub fn closest_in_view<P: Point>(
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let last = core::mem::replace(&mut memory.last, u32::MAX);
     let before = work.spans_visited;
-    let nearby = &match line.nearby(view.patches(), ray, limits, work) {
-        Ok(Some(nearby)) => nearby,
-        Ok(None) => return Ok(None),
-        Err(limit) => return Err(GaveUp { limit, best: None }),
-    };
-    let limits = &limits.beyond(work, before);
+    match line.nearby(view.patches(), ray, limits, work) {
+        Ok(Some(nearby)) => {
+            let limits = &limits.beyond(work, before);
+            closest_of_nearby(view, &nearby, memory, last, scan_line.wrapping_add(1), ray, limits, room, work)
+        }
+        Ok(None) => Ok(None),
+        Err(limit) => Err(GaveUp { limit, best: None }),
+    }
+}
+
+/// Of its own, so that a ray that can meet nothing costs no more than to see that.
+#[inline(never)]
+fn closest_of_nearby<P: Point>(
+    view: &View<'_, P>,
+    nearby: &InLine<'_, P::Scalar>,
+    memory: &mut Following<'_, P::Scalar>,
+    last: u32,
+    stamp: u32,
+    ray: &ViewRay<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    room: &mut ClipRoom<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let ray = &view.facing(ray);
     let mut best = None;
-    let ended =
-        closest_so_far(view, nearby, memory, last, scan_line.wrapping_add(1), ray, limits, room, &mut best, work);
+    let ended = closest_so_far(view, nearby, memory, last, stamp, ray, limits, room, &mut best, work);
     let best = best.map(|Best { root, surface, .. }| root.hit(surface, ray.planes.t(root.depth)));
     match ended {
         Ok(()) => Ok(best),
@@ -83,8 +100,9 @@ fn closest_so_far<P: Point>(
     let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(ray.place, stamp));
     let mut search = Search { view, ray, limits, nearby, room, projected: None };
     let mut resumed = false;
-    if let Some(start) = start.filter(|_| search.nearby.holds_surface(last)) {
-        resumed = search.resume(last, start, best, work)?;
+    let start = start.filter(|_| search.nearby.holds_surface(last));
+    if let (Some(start), Some(slot)) = (start, memory.slots.get_mut(last as usize)) {
+        resumed = search.resume(last, start, slot, stamp, best, work)?;
         work.start_failed += u32::from(!resumed);
     }
     if !resumed {
@@ -93,7 +111,13 @@ fn closest_so_far<P: Point>(
     }
     if let Some(best) = best {
         memory.last = best.surface;
-        memory.slots.get_mut(best.surface as usize).ok_or(Limit::Memory)?.keep(best, ray, stamp);
+        // A root that a patch led to.
+        if !best.kept {
+            let surface = view.surface(best.surface as usize).ok_or(Limit::Slot)?;
+            let local = search.clipper(&surface)?.local([best.root.u, best.root.v], work)?;
+            let slot = memory.slots.get_mut(best.surface as usize).ok_or(Limit::Memory)?;
+            slot.keep(&best.root, &local, ray, stamp);
+        }
     }
     Ok(())
 }
@@ -116,6 +140,8 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         &mut self,
         surface: u32,
         start: [P::Scalar; 2],
+        slot: &mut Followed<P::Scalar>,
+        stamp: u32,
         best: &mut Option<Best<P::Scalar>>,
         work: &mut Work,
     ) -> Result<bool, Limit> {
@@ -126,7 +152,9 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         })) else {
             return Ok(false);
         };
-        let of_window = self.view.surface(surface as usize).ok_or(Limit::Slot)?;
+        let Some(of_window) = self.view.surface(surface as usize) else {
+            return Err(Limit::Slot);
+        };
         let single = self.clipper(&of_window)?.single(window, work)?;
         let Single::Root(point, local) = single else {
             return Ok(false);
@@ -135,10 +163,12 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
             return Ok(false);
         }
         work.intersection_points += 1;
-        *best = Some(Best::new(point, surface, &local, ray));
+        // At once, and not when it is known to be the closest: the next ray's start waits for it.
+        slot.keep(&point, &local, ray, stamp);
+        *best = Some(Best { root: point, surface, kept: true });
         let alone = Alone::new(&point, &local, of_window.bend);
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
-        let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().sides());
+        let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
         let mut verified = true;
         nearby.visit(&ray.planes, point.depth, limits, work, exempt, |number, patch, crossing, work| {
             let farthest = best.map_or(point.depth, |best| best.root.depth);
@@ -194,8 +224,8 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         let surface = self.view.surface(number as usize).ok_or(Limit::Slot)?;
         let ray = self.ray;
         let domain = Region { sides: patch.domain().bounds(), ..Region::WHOLE };
-        self.clipper(&surface)?.roots_within(domain, work, |root, local, work| {
-            Best::keep(best, Best::new(root, number, &local, ray), &ray.planes, work);
+        self.clipper(&surface)?.roots_within(domain, work, |root, work| {
+            Best::keep(best, Best { root, surface: number, kept: false }, &ray.planes, work);
         })
     }
 

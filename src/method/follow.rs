@@ -72,14 +72,20 @@ impl<S: Scalar> Followed<S> {
         }))
     }
 
-    /// Keeps what a ray found.
+    /// Keeps a root that a ray found, near which `local` holds.
     #[inline(always)]
-    pub(super) fn keep(&mut self, Best { root, rates, .. }: &Best<S>, ray: &Facing<S>, stamp: u32) {
-        let at = [root.u, root.v];
-        let (x, y) = (ray.place[0] - self.place[0], ray.place[1] - self.place[1]);
+    pub(super) fn keep(&mut self, root: &Root<S>, local: &Local<S>, ray: &Facing<S>, stamp: u32) {
+        let rates = local.rates(root.depth + ray.ahead, ray.turning);
+        self.go_on([root.u, root.v], rates, ray.place, stamp);
+    }
+
+    /// Goes on to the point (u, v) of the ray at (x, y); `rates` are its derivatives in x and in y, if they are known.
+    #[inline(always)]
+    fn go_on(&mut self, at: [S; 2], rates: Option<[[S; 2]; 2]>, place: [S; 2], stamp: u32) {
+        let (x, y) = (place[0] - self.place[0], place[1] - self.place[1]);
         let square = x * x + y * y;
         let goes_on = self.stamp == stamp && self.slopes != [[S::ZERO; 2]; 2] && square > S::ZERO;
-        if let (true, Some([by_x, by_y])) = (goes_on, rates) {
+        if let (true, Some([by_x, by_y])) = (goes_on, &rates) {
             let inverse = S::ONE / square;
             let (over_x, over_y) = (x * inverse, y * inverse);
             for k in 0..2 {
@@ -94,10 +100,10 @@ impl<S: Scalar> Followed<S> {
                 xy[k] += change_x * over_y + (change_y - (share + share) * y) * over_x;
                 self.excess[k] = excess;
             }
-            (self.place, self.at, self.slopes, self.way) = (ray.place, at, [*by_x, *by_y], [over_x, over_y]);
+            (self.place, self.at, self.slopes, self.way) = (place, at, [*by_x, *by_y], [over_x, over_y]);
         } else {
             let slopes = rates.unwrap_or([[S::ZERO; 2]; 2]);
-            *self = Followed { place: ray.place, at, slopes, stamp, ..Self::EMPTY };
+            *self = Followed { place, at, slopes, stamp, ..Self::EMPTY };
         }
     }
 }
@@ -107,17 +113,11 @@ impl<S: Scalar> Followed<S> {
 pub(super) struct Best<S> {
     pub(super) root: Root<S>,
     pub(super) surface: u32,
-    /// How fast (u, v) moves there, per unit of x and per unit of y, if that is known.
-    pub(super) rates: Option<[[S; 2]; 2]>,
+    /// Whether it is kept for the next ray already.
+    pub(super) kept: bool,
 }
 
 impl<S: Scalar> Best<S> {
-    /// A root of a ray on a surface, near which `local` holds.
-    #[inline(always)]
-    pub(super) fn new(root: Root<S>, surface: u32, local: &Local<S>, ray: &Facing<S>) -> Self {
-        Best { root, surface, rates: local.rates(root.depth + ray.ahead, ray.turning) }
-    }
-
     /// Counts a root as an intersection point if it lies in the ray's interval, and keeps it if it is closer; of equal ones that
     /// of the lower surface, so that the answer does not depend on the order of search.
     #[inline(always)]

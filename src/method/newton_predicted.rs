@@ -10,7 +10,7 @@
 //! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm".
 
 use super::ScratchView;
-use super::follow::{Best, Following};
+use super::follow::{Best, Followed, Following};
 use super::starts::{First, from_patch};
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::{InLine, Line};
@@ -27,6 +27,7 @@ use crate::view::{Facing, View, ViewRay};
 /// `line` is the ray's, one of patches in [`Order::Depth`](crate::line::Order::Depth). `memory` is lent, and to be left alone
 /// between rays of one scan line. `scan_line` numbers the line: a number that no earlier line with this memory had begins
 /// with no coherence (at most 2³² − 2). `work` grows by what the call did.
+#[inline]
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
@@ -39,16 +40,32 @@ pub fn closest_in_view<P: Point>(
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let last = core::mem::replace(&mut memory.last, u32::MAX);
     let before = work.spans_visited;
-    let nearby = &match line.nearby(view.patches(), ray, limits, work) {
-        Ok(Some(nearby)) => nearby,
-        Ok(None) => return Ok(None),
-        Err(limit) => return Err(GaveUp { limit, best: None }),
-    };
-    let limits = &limits.beyond(work, before);
+    match line.nearby(view.patches(), ray, limits, work) {
+        Ok(Some(nearby)) => {
+            let limits = &limits.beyond(work, before);
+            closest_of_nearby(view, &nearby, memory, last, scan_line.wrapping_add(1), ray, limits, scratch, work)
+        }
+        Ok(None) => Ok(None),
+        Err(limit) => Err(GaveUp { limit, best: None }),
+    }
+}
+
+/// Of its own, so that a ray that can meet nothing costs no more than to see that.
+#[inline(never)]
+fn closest_of_nearby<P: Point>(
+    view: &View<'_, P>,
+    nearby: &InLine<'_, P::Scalar>,
+    memory: &mut Following<'_, P::Scalar>,
+    last: u32,
+    stamp: u32,
+    ray: &ViewRay<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let ray = &view.facing(ray);
     let mut best = None;
-    let ended =
-        closest_so_far(view, nearby, memory, last, scan_line.wrapping_add(1), ray, limits, scratch, &mut best, work);
+    let ended = closest_so_far(view, nearby, memory, last, stamp, ray, limits, scratch, &mut best, work);
     let best = best.map(|Best { root, surface, .. }| root.hit(surface, ray.planes.t(root.depth)));
     match ended {
         Ok(()) => Ok(best),
@@ -73,12 +90,14 @@ fn closest_so_far<P: Point>(
     let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(ray.place, stamp));
     let start = start.filter(|_| nearby.holds_surface(last));
     let first = if start.is_some() { last } else { nearby.first_surface().ok_or(Limit::Slot)? };
-    let surface = view.surface(first as usize).ok_or(Limit::Slot)?;
+    let Some(surface) = view.surface(first as usize) else {
+        return Err(Limit::Slot);
+    };
     let solver = Solver::new(&surface, planes, limits, scratch.flat, &mut scratch.basis);
     let mut search = Search { view, ray, nearby, solver };
     let mut resumed = false;
-    if let Some(start) = start {
-        resumed = search.resume(start, best, work)?;
+    if let (Some(start), Some(slot)) = (start, memory.slots.get_mut(last as usize)) {
+        resumed = search.resume(start, slot, stamp, best, work)?;
         work.start_failed += u32::from(!resumed);
     }
     if !resumed {
@@ -86,14 +105,14 @@ fn closest_so_far<P: Point>(
         search.in_full(best, work)?;
     }
     if let Some(best) = best {
-        // Of a root that a patch led to, for the next ray's sake.
-        if best.rates.is_none() {
+        memory.last = best.surface;
+        // A root that a patch led to.
+        if !best.kept {
             search.solver.turn_to(&view.surface(best.surface as usize).ok_or(Limit::Slot)?);
             let local = search.solver.local([best.root.u, best.root.v], work)?;
-            *best = Best::new(best.root, best.surface, &local, ray);
+            let slot = memory.slots.get_mut(best.surface as usize).ok_or(Limit::Memory)?;
+            slot.keep(&best.root, &local, ray, stamp);
         }
-        memory.last = best.surface;
-        memory.slots.get_mut(best.surface as usize).ok_or(Limit::Memory)?.keep(best, ray, stamp);
     }
     Ok(())
 }
@@ -112,6 +131,8 @@ impl<P: Point> Search<'_, '_, '_, P> {
     fn resume(
         &mut self,
         start: [P::Scalar; 2],
+        slot: &mut Followed<P::Scalar>,
+        stamp: u32,
         best: &mut Option<Best<P::Scalar>>,
         work: &mut Work,
     ) -> Result<bool, Limit> {
@@ -124,10 +145,12 @@ impl<P: Point> Search<'_, '_, '_, P> {
             return Ok(false);
         }
         work.intersection_points += 1;
-        *best = Some(Best::new(point, surface, &local, ray));
+        // At once, and not when it is known to be the closest: the next ray's start waits for it.
+        slot.keep(&point, &local, ray, stamp);
+        *best = Some(Best { root: point, surface, kept: true });
         let alone = Alone::new(&point, &local, solver.surface.bend);
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
-        let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().sides());
+        let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
         let mut verified = true;
         nearby.visit(planes, point.depth, limits, work, exempt, |number, patch, crossing, work| {
             let farthest = best.map_or(point.depth, |best| best.root.depth);
@@ -143,7 +166,7 @@ impl<P: Point> Search<'_, '_, '_, P> {
             verified = false;
             solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
             if let Some(root) = from_patch(solver, patch, crossing, First::Entrance, work)? {
-                Best::keep(best, Best { root, surface: number, rates: None }, planes, work);
+                Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
             }
             Ok(best.map_or(farthest, |best| best.root.depth))
         })?;
@@ -171,7 +194,7 @@ impl<P: Point> Search<'_, '_, '_, P> {
                 if crossing.overlaps(&range) {
                     solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
                     if let Some(root) = from_patch(solver, patch, crossing, First::AsCritical, work)? {
-                        Best::keep(best, Best { root, surface: number, rates: None }, planes, work);
+                        Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
                     }
                 }
                 Ok(best.map_or(ray.range.max, |best| best.root.depth))

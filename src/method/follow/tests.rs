@@ -1,11 +1,4 @@
 use super::*;
-use crate::planes::DepthRange;
-use crate::ray::Interval;
-
-fn facing(place: [f64; 2]) -> Facing<f64> {
-    let planes = Planes::turned([0.0; 3], [0.0, 0.0, 1.0], 0.0, 1.0, Interval::ahead());
-    Facing { place, planes, range: DepthRange { min: 0.0, max: 1.0 }, ahead: 1.0, turning: [[1.0, 0.0], [0.0, 1.0]] }
-}
 
 /// u and v as functions of x and y, with their derivatives per unit of x and of y.
 type Motion = fn(f64, f64) -> ([f64; 2], [[f64; 2]; 2]);
@@ -24,9 +17,8 @@ fn cubic(x: f64, _: f64) -> ([f64; 2], [[f64; 2]; 2]) {
 }
 
 fn keep(memory: &mut Followed<f64>, motion: Motion, place: [f64; 2], stamp: u32) {
-    let ([u, v], rates) = motion(place[0], place[1]);
-    let root = Root { u, v, depth: 0.0, grazing: false };
-    memory.keep(&Best { root, surface: 0, rates: Some(rates) }, &facing(place), stamp);
+    let (at, rates) = motion(place[0], place[1]);
+    memory.go_on(at, Some(rates), place, stamp);
 }
 
 fn error(memory: &Followed<f64>, motion: Motion, place: [f64; 2], stamp: u32) -> f64 {
@@ -77,7 +69,6 @@ fn another_line_is_not_remembered_and_an_unknown_rate_predicts_the_last_point() 
     keep(&mut memory, quadratic, [0.1, 0.0], 6);
     // Nothing of line 5 is left in it.
     assert!(error(&memory, quadratic, [0.1, 0.0], 6) < 1e-15 && memory.bends == [[0.0; 2]; 3]);
-    let root = Root { u: 0.3, v: 0.4, depth: 0.0, grazing: false };
-    memory.keep(&Best { root, surface: 0, rates: None }, &facing([0.2, 0.0]), 6);
+    memory.go_on([0.3, 0.4], None, [0.2, 0.0], 6);
     assert_eq!(memory.predict([0.3, 0.1], 6), Some([0.3, 0.4]));
 }
