@@ -309,8 +309,8 @@ impl Report {
              original is owed to its order of search and its early end, and not to coherence."
                 .to_owned(),
             "Tables 1 to 3 are of views: surfaces are searched front to back, by what each scan line can see, by the \
-             originals too. Table 4 is of any rays, by trees and grids: there the intersection points of primary rays \
-             are those to hold against the paper's."
+             originals too. Table 4 is of any rays, by trees and grids; there surfaces are searched in the order of \
+             the grid's cells, which is front to back only roughly, and more points are found."
                 .to_owned(),
             "Twice: intersection points in excess of the roots that the oracle finds on their ray. Wrong, missed and \
              phantom pixels are by the oracle too."
