@@ -11,6 +11,7 @@
 
 use crate::bernstein::{BasisView, Full};
 use crate::clip::{Clip, Noise, clip};
+use crate::contract::{Contraction, Single, contract, single};
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::newton::{Local, Place, Root, noise};
 use crate::part::Part;
@@ -51,16 +52,6 @@ pub struct Clipper<'a, 's, 'm, P: Point> {
     pub room: &'a mut ClipRoom<'s, P>,
 }
 
-/// What a proof of at most one root came to.
-pub(crate) enum Single<S> {
-    /// There is none.
-    Nothing,
-    /// One, and the surface there to first order.
-    Root(Root<S>, Local<S>),
-    /// There may be more than one.
-    Unproved,
-}
-
 impl<P: Point> Clipper<'_, '_, '_, P> {
     /// Projects the net, for [`Clipper::single`] and [`Clipper::roots_within`].
     #[inline(always)]
@@ -74,14 +65,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
         let Clipper { surface, planes, limits, room } = self;
         let ClipRoom { whole, basis, .. } = &mut **room;
         let whole = whole.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
-        Ok(match contract(surface, whole, region, limits, basis, work)? {
-            Step::Done(Some(place)) => {
-                let root = place.root(&surface.net, planes, limits, basis)?;
-                Single::Root(root, place.local)
-            }
-            Step::Done(None) => Single::Nothing,
-            _ => Single::Unproved,
-        })
+        single(surface, planes, whole, region, limits, basis, work)
     }
 
     /// The surface at (u, v) to first order. The net has to be projected.
@@ -129,7 +113,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
 
     /// [`Clipper::roots`] of a region of the surface, or all of it, from the projected net.
     #[inline(always)]
-    fn clipped(
+    pub(crate) fn clipped(
         &mut self,
         mut order: Order<P::Scalar>,
         region: Option<Region<P::Scalar>>,
@@ -164,7 +148,10 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                 Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
                     part.narrow(direction, [from, to]);
                     settled = false;
-                    contract(surface, whole, part.region, limits, basis, work)?
+                    match contract(surface, whole, part.region, limits, basis, work)? {
+                        Contraction::Open => Step::On,
+                        Contraction::Done(place) => Step::Done(place),
+                    }
                 }
                 // A width that cannot be halved is as settled as one that need not be. One that moves nothing, as along a
                 // collapsed edge, is not to be halved when the other, settled as seen across its own line, is what keeps it
@@ -227,74 +214,6 @@ enum Step<S> {
     Settled,
     /// The region is done with: where its root is, if it has one.
     Done(Option<Place<S>>),
-}
-
-/// Regions over which the surface may stray farther than this, in the frame, are clipped on without asking whether they hold
-/// one root at most: few would be proved to, and asking costs a third of a clip. Ten times as much costs 2 % more instructions
-/// on the common teapot.
-const PROVABLE: f64 = 0.0025;
-
-/// Newton's method, in a region that is proved to hold at most one root: ends with that root, or with the proof that there
-/// is none.
-///
-/// Over the region the surface departs from its linear part at the middle by at most σ ([`Surface::strays`]). With J the
-/// Jacobian there, the projection is injective on the region if J⁻¹ turns 2 σ into less than half a width in each
-/// parameter, and a root lies no farther than J⁻¹ turns σ into from where the step leads (R. Krawczyk, "Newton-Algorithmen
-/// zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4, 1969). So each step at least halves the region.
-#[inline(always)]
-fn contract<P: Point>(
-    surface: &Surface<'_, P>,
-    whole: &[P::Flat],
-    mut region: Region<P::Scalar>,
-    limits: &Limits<P::Scalar>,
-    basis: &mut BasisView<'_, P::Scalar>,
-    work: &mut Work,
-) -> Result<Step<P::Scalar>, Limit> {
-    if !(surface.strays(region.widths()) <= P::Scalar::from_f64(PROVABLE)) {
-        return Ok(Step::On);
-    }
-    // Ends: each turn counts a step against its budget; and the region halves until the number type holds no more.
-    loop {
-        let halves = region.widths().map(|width| width * P::Scalar::HALF);
-        let strays = surface.strays(halves);
-        let [u, v] = region.middle();
-        spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
-        let local = Local::at([u, v], surface.net.degrees(), whole, basis)?;
-        let [along_u, along_v] = local.inverse_bounds(strays);
-        // A NaN or a singular Jacobian proves nothing; nor does one that may be all rounding, as of a flat net seen edge on.
-        let proved = !local.may_be_singular() && along_u + along_u < halves[0] && along_v + along_v < halves[1];
-        let Some([du, dv]) = local.step().filter(|_| proved) else {
-            return Ok(Step::On);
-        };
-        let next = [u + du, v + dv];
-        let [slack_u, slack_v] = local.inverse_bounds(strays + limits.tolerance);
-        let near = [[next[0] - slack_u, next[0] + slack_u], [next[1] - slack_v, next[1] + slack_v]];
-        // A root is proved to lie there; and the step, shorter than all that the region allows for, leaves no more than the
-        // tolerance.
-        if region.encloses(near) && surface.strays([du, dv]) <= limits.tolerance {
-            return Ok(Step::Done(Some(Place { at: next, local })));
-        }
-        if strays <= limits.tolerance {
-            let (mut local, mut next, mut held) = (local, next, region.nearest(next));
-            if !local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance) {
-                // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
-                // far along the surface: one more from the border says on which side of it the root lies.
-                spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
-                local = Local::at(held, surface.net.degrees(), whole, basis)?;
-                let Some([du, dv]) = local.step() else {
-                    return Ok(Step::On);
-                };
-                next = [held[0] + du, held[1] + dv];
-                held = region.nearest(next);
-            }
-            let on_it = local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance);
-            return Ok(Step::Done(on_it.then_some(Place { at: held, local })));
-        }
-        match region.meet(near) {
-            Some(smaller) => region = smaller,
-            None => return Ok(Step::Done(None)),
-        }
-    }
 }
 
 /// How far the points of a settled region pass the ray at most, by the measure of [`Local::residual`].

@@ -89,12 +89,16 @@ pub mod walk;
 
 pub mod newton;
 
+mod contract;
+pub mod region;
+
 pub mod clip;
 mod part;
-pub mod region;
 mod roots;
 
 pub mod clipper;
+
+pub mod fallback;
 
 pub mod sweep;
 pub mod verify;

@@ -7,14 +7,16 @@
 use crate::ray::Hit;
 use crate::scalar::Scalar;
 
-/// By which rule a coherent method believes that a ray meets a patch at most once.
+/// By which rule a ray is believed to meet a patch at most once, or not at all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Acceptance {
     /// The paper's: unless eq. (1), tan α > b/h, flags the ray as nearly tangential. Likely, not certain.
     #[default]
     Paper,
-    /// Only where the patch's projection along the ray is proved injective
-    /// ([`Patch::at_most_once`](crate::patch::Patch::at_most_once)). A rational patch is never proved.
+    /// Only where that is proved: of a point found before, by the patch's projection along the ray being injective
+    /// ([`Patch::at_most_once`](crate::patch::Patch::at_most_once); a rational patch is never proved so). And of each other patch
+    /// that the ray meets Newton's methods prove that it holds no root or one, or hand it to their
+    /// [`Fallback`](crate::fallback::Fallback).
     Proved,
 }
 
@@ -35,7 +37,7 @@ pub struct Limits<S> {
     /// Parameter: the factor f in eq. (1), read as tan α > f · b/h; the paper's is 1. Smaller flags more rays as critical,
     /// which costs time and loses fewer double roots.
     pub critical_factor: S,
-    /// Parameter: what the coherent methods take for "met at most once".
+    /// Parameter: what Newton's methods and the coherent ones take for "met at most once".
     pub acceptance: Acceptance,
     /// Parameter: the share of a parameter's interval that a clip has to remove, else the interval is bisected; the
     /// paper's is 0.20. Smaller clips on where a bisection would part two roots, larger bisects where a clip would do.
@@ -103,7 +105,8 @@ pub struct Extent {
     pub spans: u32,
     /// How often a method may walk the grid of one surface for one ray: 0, or 2 with a testing ray first.
     pub walks: u32,
-    /// Whether the method is a clipping method: these have no bound on clips and Newton iterations but the budget.
+    /// Whether the method is a clipping method, or falls back on one: these have no bound on clips and Newton iterations but the
+    /// budget.
     pub clipped: bool,
 }
 
@@ -146,13 +149,16 @@ impl<S: Scalar> Limits<S> {
             // four times: for the list, for its surface, and in two searches.
             spans_visited: (spans.saturating_mul(spans + 7) / 2).min(u64::from(self.spans)) as u32,
             newton_starts: starts,
-            newton_steps: if extent.clipped {
+            newton_steps: if extent.clipped || self.acceptance == Acceptance::Proved {
                 self.newton_steps
             } else {
                 starts.saturating_mul(self.newton_iterations).min(self.newton_steps)
             },
             critical: patches,
             unresolved: patches,
+            excluded: patches,
+            handed_over: patches,
+            unproved: patches,
             intersection_points: starts.saturating_add(clips),
             verified: extent.surfaces,
             decided_by_list: extent.surfaces,
@@ -209,6 +215,12 @@ counters! {
     critical,
     /// Patches met of which no start led to a root; taken for no hit, as in the paper.
     unresolved,
+    /// Newton's methods under [`Acceptance::Proved`]: patches met that are proved to hold no root.
+    excluded,
+    /// The same: patches met that the fallback decided.
+    handed_over,
+    /// The same, without a fallback: patches met of which their starts and more prove too little; taken as those say.
+    unproved,
     /// Roots found in the interval, each time they were found: the paper's "intersection points".
     intersection_points,
     /// Coherent: points confirmed at once, alone in the testing ray's list.

@@ -4,9 +4,12 @@
 use std::marker::PhantomData;
 
 use heapless::Vec as List;
+use patchray::clipper::ClipRoom;
 use patchray::grid::Grids;
 use patchray::limits::{GaveUp, Limit, Limits, Work};
-use patchray::method::{ClipScratch, Remembered, Scratch, clipping, clipping_coherent, newton, newton_coherent};
+use patchray::method::{
+    ClipScratch, Remembered, Scratch, ScratchView, clipping, clipping_coherent, newton, newton_coherent,
+};
 use patchray::patch::Patches;
 use patchray::point::Point;
 use patchray::ray::{Hit, Interval, Ray};
@@ -156,6 +159,21 @@ pub trait Complete<P: Point>: Method<P> {
 #[derive(Clone, Copy, Debug)]
 pub struct Newton;
 
+/// What Newton's methods need per ray, with what they fall back on.
+#[derive(Debug, Default)]
+pub struct NewtonScratch<P: Point> {
+    newton: Scratch<P, ORDER, NET>,
+    clips: ClipScratch<P, ORDER, NET, PENDING>,
+}
+
+impl<P: Point> NewtonScratch<P> {
+    /// The view that the methods take.
+    #[inline]
+    pub fn view(&mut self) -> ScratchView<'_, P, ClipRoom<'_, P>> {
+        self.newton.view_with(self.clips.view())
+    }
+}
+
 /// The closest hit by [`patchray::method::newton_coherent`].
 #[derive(Clone, Copy, Debug)]
 pub struct NewtonCoherent;
@@ -178,7 +196,7 @@ pub struct AnyHit<M>(PhantomData<M>);
 
 impl<P: Point> Method<P> for Newton {
     const COHERENT: bool = false;
-    type Scratch = Scratch<P, ORDER, NET>;
+    type Scratch = NewtonScratch<P>;
     type Hits = Hit<P::Scalar>;
 
     #[inline]
@@ -218,7 +236,7 @@ impl<P: Point> Complete<P> for Newton {
 
 impl<P: Point> Method<P> for NewtonCoherent {
     const COHERENT: bool = true;
-    type Scratch = Scratch<P, ORDER, NET>;
+    type Scratch = NewtonScratch<P>;
     type Hits = Hit<P::Scalar>;
 
     #[inline]

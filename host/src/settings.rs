@@ -26,7 +26,8 @@ pub struct Flags {
     /// The precision in which hits are computed [default: f64]
     #[arg(long, value_enum, help_heading = "Tracing")]
     pub precision: Option<Precision>,
-    /// When a coherent method takes a point for the only one of its patch [default: paper]
+    /// When Newton's methods and the coherent ones believe that a patch holds no other hit [default: proved; of `tables`:
+    /// paper]
     #[arg(long, value_enum, help_heading = "Tracing")]
     pub acceptance: Option<Acceptance>,
     /// Newton iterations per start, at least 1
@@ -261,7 +262,7 @@ pub struct Settings {
     pub method: Method,
     /// The precision.
     pub precision: Precision,
-    /// The acceptance of the coherent methods.
+    /// The acceptance of Newton's methods and the coherent ones.
     pub acceptance: Acceptance,
     /// Newton iterations per start.
     pub newton_iterations: u32,

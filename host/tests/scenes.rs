@@ -1,10 +1,10 @@
 //! The paper's four scenes: what `fixtures/scenes` holds of them, and how near it comes to the figures of its Table 1.
 
-use patchray_host::scanline::{Tally, rays_of};
+use patchray_host::scanline::{Outcome, Tally, rays_of};
 use patchray_host::scene::camera::View;
 use patchray_host::scene::error::OnInvalid;
 use patchray_host::scene::file::{self, Scene};
-use patchray_host::scene::trace::{Method, Precision};
+use patchray_host::scene::trace::{Acceptance, Method, Precision};
 use patchray_host::settings::{Flags, Settings};
 use patchray_host::viewed::{Viewed, Wishes};
 use std::path::Path;
@@ -36,7 +36,12 @@ fn picture(scene: &Scene) -> View {
 
 /// The scene ready for that picture by the original numerical method, at its own flatness.
 fn viewed(scene: &Scene) -> Viewed {
-    let flags = Flags { method: Some(Method::Newton), precision: Some(Precision::F64), ..Flags::default() };
+    let flags = Flags {
+        method: Some(Method::Newton),
+        precision: Some(Precision::F64),
+        acceptance: Some(Acceptance::Paper),
+        ..Flags::default()
+    };
     let settings = Settings::of_scene(&flags, &scene.description.trace, &scene.source).expect("it is valid");
     let viewed = Viewed::build(&scene.model, &settings, &picture(scene), Wishes::PRIMARY).expect("there is memory");
     assert!(viewed.has_view());
@@ -76,6 +81,54 @@ fn intersection_points_are_the_papers() {
         assert_eq!((tally.rays, tally.gave_up_in_all()), (512 * 512, 0), "{name}");
         assert_near(name, tally.count("intersection_points"), intersection_points);
     }
+}
+
+/// What a method answers for a small picture of a scene: t, or nothing.
+fn answers(scene: &Scene, settings: &Settings) -> Vec<Option<f64>> {
+    let picture = scene.description.camera.view([96, 96]);
+    let mut viewed = Viewed::build(&scene.model, settings, &picture, Wishes::PRIMARY).expect("there is memory");
+    let (tracer, _) = viewed.tracer().expect("there is memory");
+    let (mut lane, mut tally, mut outcomes) = (tracer.lane(), Tally::default(), Vec::new());
+    for line in 0..picture.scan_lines() {
+        let samples = picture.scan_line(line);
+        lane.trace_line(&samples, &rays_of(&picture, line, &samples), &mut outcomes, &mut tally);
+    }
+    let t = |outcome: &Outcome| match outcome {
+        Outcome::Hit(found) => Some(found.t),
+        Outcome::Miss => None,
+        other => panic!("{other:?}"),
+    };
+    outcomes.iter().map(t).collect()
+}
+
+/// With patches so coarse that the paper's rule loses hits, what is proved and clipped loses none, and finds none that is not
+/// there; with more patches neither.
+#[test]
+fn what_is_proved_is_right_at_any_number_of_patches() {
+    let mut lost = 0;
+    for Row { name, .. } in TABLE_1 {
+        let scene = scene(name);
+        let fine = Settings::of_scene(&Flags::default(), &scene.description.trace, &scene.source).expect("it is valid");
+        assert_eq!(fine.acceptance, Acceptance::Proved);
+        let expected = answers(&scene, &Settings { method: Method::Clipping, ..fine });
+        for coarse in [1.0, 8.0, 64.0] {
+            let settings = Settings { flatness: fine.flatness * coarse, ..fine };
+            for method in [Method::Newton, Method::NewtonCoherent, Method::NewtonPredicted] {
+                let differ = |acceptance| {
+                    let found = answers(&scene, &Settings { method, acceptance, ..settings });
+                    let differs = |(a, b): (&Option<f64>, &Option<f64>)| match (a, b) {
+                        (Some(a), Some(b)) => (a - b).abs() > 1e-9 * b,
+                        (a, b) => a.is_some() != b.is_some(),
+                    };
+                    found.iter().zip(&expected).filter(|&pair| differs(pair)).count()
+                };
+                assert_eq!(differ(Acceptance::Proved), 0, "{name}, {method:?}, flatness {}", settings.flatness);
+                lost += differ(Acceptance::Paper);
+            }
+        }
+    }
+    // Else this has seen nothing.
+    assert!(lost > 100, "{lost}");
 }
 
 /// Neighbours have the same control points along the edge that they share, to the bit, wherever they are put.

@@ -15,7 +15,8 @@
 //! Source: the paper's section "An Improvement of Bézier Clipping".
 
 use super::follow::{Best, Followed, Following};
-use crate::clipper::{ClipRoom, Clipper, Single};
+use crate::clipper::{ClipRoom, Clipper};
+use crate::contract::Single;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::{InLine, Line};
 use crate::newton::Alone;

@@ -16,6 +16,7 @@ pub use follow::{Followed, Following};
 
 use crate::bernstein::{Basis, BasisView};
 use crate::clipper::ClipRoom;
+use crate::fallback::{Fallback, NoFallback};
 use crate::newton::Root;
 use crate::planes::Planes;
 use crate::point::Point;
@@ -37,9 +38,14 @@ impl<P: Point, const ORDER: usize, const POINTS: usize> Scratch<P, ORDER, POINTS
         Scratch { flat: Vec::new(), basis: Basis::new() }
     }
 
-    /// The view that the methods take.
+    /// The view that the methods take, without a fallback.
     pub fn view(&mut self) -> ScratchView<'_, P> {
-        ScratchView { flat: &mut self.flat, basis: self.basis.view() }
+        self.view_with(NoFallback)
+    }
+
+    /// The view that the methods take, with a fallback: a [`ClipRoom`], which a [`ClipScratch`] gives, or [`NoFallback`].
+    pub fn view_with<F: Fallback<P>>(&mut self, fallback: F) -> ScratchView<'_, P, F> {
+        ScratchView { flat: &mut self.flat, basis: self.basis.view(), fallback }
     }
 }
 
@@ -51,11 +57,14 @@ impl<P: Point, const ORDER: usize, const POINTS: usize> Default for Scratch<P, O
 
 /// A view of [`Scratch`] without its capacities.
 #[derive(Debug)]
-pub struct ScratchView<'s, P: Point> {
+pub struct ScratchView<'s, P: Point, F = NoFallback> {
     /// Room for a surface's projected net.
     pub flat: &'s mut VecView<P::Flat>,
     /// Room for evaluating a surface.
     pub basis: BasisView<'s, P::Scalar>,
+    /// What decides patches of which Newton's method proves nothing; asked under
+    /// [`Acceptance::Proved`](crate::limits::Acceptance::Proved) only.
+    pub fallback: F,
 }
 
 /// What one thread needs per ray, whichever of the clipping methods it traces with. `ORDER` is the highest degree + 1,

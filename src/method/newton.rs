@@ -6,8 +6,9 @@
 //!
 //! Source: Barth and Stürzlinger (1993); the paper's section "Barth and Stürzlinger's Algorithm".
 
-use super::starts::{First, from_patch};
+use super::starts::{First, roots_of_patch};
 use super::{ScratchView, collect, keep_closest};
+use crate::fallback::Fallback;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::Line;
 use crate::newton::{Root, Solver};
@@ -27,14 +28,14 @@ use heapless::vec::VecView;
 ///
 /// `patches` and `tree` have to come from this scene's surfaces. `work` is set to what the call did. A patch whose starts
 /// all fail is taken for no hit, as in the paper, so a miss is not proved.
-pub fn closest<P: Point>(
+pub fn closest<P: Point, F: Fallback<P>>(
     scene: &Scene<'_, P>,
     patches: &Patches<'_, P::Scalar>,
     tree: &Tree<'_, P::Scalar>,
     ray: &Ray<P::Scalar>,
     interval: &Interval<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
@@ -53,12 +54,12 @@ pub fn closest<P: Point>(
 /// tree is descended. All else is as for [`closest`],
 /// but `work` grows by what the call did.
 #[inline]
-pub fn closest_in_view<P: Point>(
+pub fn closest_in_view<P: Point, F: Fallback<P>>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
     ray: &ViewRay<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
@@ -66,9 +67,10 @@ pub fn closest_in_view<P: Point>(
         let mut solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
         along.ahead(planes, &range, limits, work, |patch, crossing, work| {
             if crossing.overlaps(&range) {
-                if let Some(root) = from_patch(&mut solver, patch, crossing, First::AsCritical, work)? {
+                let fallback = &mut scratch.fallback;
+                roots_of_patch(&mut solver, fallback, patch, crossing, First::AsCritical, work, |root, work| {
                     keep_closest(&mut best, root, planes, &mut work.intersection_points);
-                }
+                })?;
             }
             Ok(P::Scalar::INFINITY)
         })?;
@@ -82,14 +84,14 @@ pub fn closest_in_view<P: Point>(
 /// Complete only as far as each patch is met once at most, and its starts lead to that root: of two roots on one patch it
 /// finds one. [`clipping::all_hits`](super::clipping::all_hits) finds all. More hits than the list holds are
 /// [`Limit::Hits`]; it then holds the closest. `work` is set to what the call did.
-pub fn all_hits<P: Point>(
+pub fn all_hits<P: Point, F: Fallback<P>>(
     scene: &Scene<'_, P>,
     patches: &Patches<'_, P::Scalar>,
     tree: &Tree<'_, P::Scalar>,
     ray: &Ray<P::Scalar>,
     interval: &Interval<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     hits: &mut VecView<Hit<P::Scalar>>,
     work: &mut Work,
 ) -> Result<(), GaveUp<P::Scalar>> {
@@ -103,14 +105,14 @@ pub fn all_hits<P: Point>(
 
 /// A hit of `ray` in `interval`, the first that is found, not the closest. A miss is not proved, as in [`closest`]. `work`
 /// is set to what the call did.
-pub fn any_hit<P: Point>(
+pub fn any_hit<P: Point, F: Fallback<P>>(
     scene: &Scene<'_, P>,
     patches: &Patches<'_, P::Scalar>,
     tree: &Tree<'_, P::Scalar>,
     ray: &Ray<P::Scalar>,
     interval: &Interval<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     collect::any_hit(scene, ray, interval, limits, work, |surface, planes, range, work| {
@@ -125,14 +127,14 @@ pub fn any_hit<P: Point>(
 
 /// The roots from all patches of one surface along the ray, through its binary tree, to `found`, which says whether to go on.
 #[inline(always)]
-fn roots<P: Point>(
+fn roots<P: Point, F: Fallback<P>>(
     surface: &Surface<'_, P>,
     patches: &Patches<'_, P::Scalar>,
     tree: &Tree<'_, P::Scalar>,
     planes: &Planes<P::Scalar>,
     range: DepthRange<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
     mut found: impl FnMut(Root<P::Scalar>, &mut Work) -> bool,
 ) -> Result<(), Limit> {
@@ -144,10 +146,12 @@ fn roots<P: Point>(
         if !crossing.overlaps(&range) {
             continue;
         }
-        if let Some(root) = from_patch(&mut solver, patch, &crossing, First::AsCritical, work)? {
-            if !found(root, work) {
-                break;
-            }
+        let (fallback, mut go_on) = (&mut scratch.fallback, true);
+        roots_of_patch(&mut solver, fallback, patch, &crossing, First::AsCritical, work, |root, work| {
+            go_on = found(root, work) && go_on;
+        })?;
+        if !go_on {
+            break;
         }
     }
     Ok(())

@@ -11,8 +11,9 @@
 //! - ours: from a listed patch Newton's method tries the entrance, as the paper says, then the parallelogram and the exit;
 //! - ours: a point that no listed patch holds cannot be judged, and the surface is searched in full.
 
-use super::starts::{First, from_patch};
+use super::starts::{First, roots_of_patch};
 use super::{Remembered, ScratchView, keep_closest};
+use crate::fallback::Fallback;
 use crate::grid::Grids;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::Line;
@@ -32,7 +33,7 @@ use crate::view::{View, ViewRay};
 /// `patches` and `grids` have to come from this scene's surfaces. `memory` is lent, a slot per surface; between rays of one
 /// scan line it is to be left alone. `scan_line` numbers the line: a number that no earlier line with this memory had
 /// begins with no coherence (at most 2³² − 2). `work` is set to what the call did.
-pub fn closest<P: Point>(
+pub fn closest<P: Point, F: Fallback<P>>(
     scene: &Scene<'_, P>,
     patches: &Patches<'_, P::Scalar>,
     grids: &Grids<'_, P::Scalar>,
@@ -41,7 +42,7 @@ pub fn closest<P: Point>(
     ray: &Ray<P::Scalar>,
     interval: &Interval<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let stamp = scan_line.wrapping_add(1);
@@ -51,7 +52,8 @@ pub fn closest<P: Point>(
         let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
         let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
         let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
-        Search { solver, along: &InGrid { grid, patches }, range }.run(slot, stamp, work)
+        Search { solver, fallback: &mut scratch.fallback, along: &InGrid { grid, patches }, range }
+            .run(slot, stamp, work)
     })
 }
 
@@ -61,32 +63,33 @@ pub fn closest<P: Point>(
 /// full search and the testing ray are led by it. All else is as for [`closest`],
 /// but `work` grows by what the call did.
 #[inline]
-pub fn closest_in_view<P: Point>(
+pub fn closest_in_view<P: Point, F: Fallback<P>>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
     memory: &mut [Remembered<P::Scalar>],
     scan_line: u32,
     ray: &ViewRay<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let stamp = scan_line.wrapping_add(1);
     line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
         let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
         let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
-        Search { solver, along, range }.run(slot, stamp, work)
+        Search { solver, fallback: &mut scratch.fallback, along, range }.run(slot, stamp, work)
     })
 }
 
 /// One ray and one surface.
-struct Search<'a, 's, 'm, P: Point, A> {
+struct Search<'a, 's, 'm, P: Point, F, A> {
     solver: Solver<'a, 's, 'm, P>,
+    fallback: &'a mut F,
     along: &'a A,
     range: DepthRange<P::Scalar>,
 }
 
-impl<P: Point, A: Along<P::Scalar>> Search<'_, '_, '_, P, A> {
+impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> {
     /// The closest point in the ray's interval, and what to remember of it.
     #[inline(always)]
     fn run(
@@ -123,7 +126,7 @@ impl<P: Point, A: Along<P::Scalar>> Search<'_, '_, '_, P, A> {
 
     /// The testing ray: the point itself if it is the closest, a closer one that it leads to, or `None` if it cannot tell.
     fn verify(&mut self, point: Root<P::Scalar>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
-        let Search { solver, along, range } = self;
+        let Search { solver, fallback, along, range } = self;
         let (planes, limits) = (solver.planes, solver.limits);
         let mut closest = Some(point);
         let (mut owners, mut alone) = (0_u32, true);
@@ -136,9 +139,10 @@ impl<P: Point, A: Along<P::Scalar>> Search<'_, '_, '_, P, A> {
                 }
             }
             alone = false;
-            if let Some(root) = from_patch(solver, listed.patch, listed.crossing, First::Entrance, work)? {
+            let first = First::Entrance;
+            roots_of_patch(solver, *fallback, listed.patch, listed.crossing, first, work, |root, work| {
                 keep_closest(&mut closest, root, planes, &mut work.intersection_points);
-            }
+            })?;
             Ok(true)
         })?;
         if owners == 0 {
@@ -156,13 +160,13 @@ impl<P: Point, A: Along<P::Scalar>> Search<'_, '_, '_, P, A> {
     fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         let (planes, limits) = (self.solver.planes, self.solver.limits);
         work.full_searches += 1;
-        let Search { solver, along, range } = self;
+        let Search { solver, fallback, along, range } = self;
         let mut best: Option<Root<P::Scalar>> = None;
         along.ahead(planes, range, limits, work, |patch, crossing, work| {
             if crossing.overlaps(range) {
-                if let Some(root) = from_patch(solver, patch, crossing, First::AsCritical, work)? {
+                roots_of_patch(solver, *fallback, patch, crossing, First::AsCritical, work, |root, work| {
                     keep_closest(&mut best, root, planes, &mut work.intersection_points);
-                }
+                })?;
             }
             // A root counts only once the walk has come to it: a patch not met yet may hold a closer one.
             Ok(best.map_or(P::Scalar::INFINITY, |root| root.depth))

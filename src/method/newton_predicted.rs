@@ -11,7 +11,8 @@
 
 use super::ScratchView;
 use super::follow::{Best, Followed, Following};
-use super::starts::{First, from_patch};
+use super::starts::{First, roots_of_patch};
+use crate::fallback::Fallback;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::{InLine, Line};
 use crate::newton::{Alone, Solver};
@@ -28,14 +29,14 @@ use crate::view::{Facing, View, ViewRay};
 /// between rays of one scan line. `scan_line` numbers the line: a number that no earlier line with this memory had begins
 /// with no coherence (at most 2³² − 2). `work` grows by what the call did.
 #[inline]
-pub fn closest_in_view<P: Point>(
+pub fn closest_in_view<P: Point, F: Fallback<P>>(
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
     memory: &mut Following<'_, P::Scalar>,
     scan_line: u32,
     ray: &ViewRay<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let last = core::mem::replace(&mut memory.last, u32::MAX);
@@ -52,7 +53,7 @@ pub fn closest_in_view<P: Point>(
 
 /// Of its own, so that a ray that can meet nothing costs no more than to see that.
 #[inline(never)]
-fn closest_of_nearby<P: Point>(
+fn closest_of_nearby<P: Point, F: Fallback<P>>(
     view: &View<'_, P>,
     nearby: &InLine<'_, P::Scalar>,
     memory: &mut Following<'_, P::Scalar>,
@@ -60,7 +61,7 @@ fn closest_of_nearby<P: Point>(
     stamp: u32,
     ray: &ViewRay<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let ray = &view.facing(ray);
@@ -74,7 +75,7 @@ fn closest_of_nearby<P: Point>(
 }
 
 #[inline(always)]
-fn closest_so_far<P: Point>(
+fn closest_so_far<P: Point, F: Fallback<P>>(
     view: &View<'_, P>,
     nearby: &InLine<'_, P::Scalar>,
     memory: &mut Following<'_, P::Scalar>,
@@ -82,7 +83,7 @@ fn closest_so_far<P: Point>(
     stamp: u32,
     ray: &Facing<P::Scalar>,
     limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P>,
+    scratch: &mut ScratchView<'_, P, F>,
     best: &mut Option<Best<P::Scalar>>,
     work: &mut Work,
 ) -> Result<(), Limit> {
@@ -94,7 +95,7 @@ fn closest_so_far<P: Point>(
         return Err(Limit::Slot);
     };
     let solver = Solver::new(&surface, planes, limits, scratch.flat, &mut scratch.basis);
-    let mut search = Search { view, ray, nearby, solver };
+    let mut search = Search { view, ray, nearby, solver, fallback: &mut scratch.fallback };
     let mut resumed = false;
     if let (Some(start), Some(slot)) = (start, memory.slots.get_mut(last as usize)) {
         resumed = search.resume(start, slot, stamp, best, work)?;
@@ -118,14 +119,15 @@ fn closest_so_far<P: Point>(
 }
 
 /// One ray.
-struct Search<'a, 's, 'm, P: Point> {
+struct Search<'a, 's, 'm, P: Point, F> {
     view: &'a View<'m, P>,
     ray: &'a Facing<P::Scalar>,
     nearby: &'a InLine<'a, P::Scalar>,
     solver: Solver<'a, 's, 'm, P>,
+    fallback: &'a mut F,
 }
 
-impl<P: Point> Search<'_, '_, '_, P> {
+impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
     /// The point found from the predicted (u, v), verified or replaced by a closer one; whether so: if not,
     /// the ray has to be searched in full.
     fn resume(
@@ -136,7 +138,7 @@ impl<P: Point> Search<'_, '_, '_, P> {
         best: &mut Option<Best<P::Scalar>>,
         work: &mut Work,
     ) -> Result<bool, Limit> {
-        let Search { view, ray, nearby, solver } = self;
+        let Search { view, ray, nearby, solver, fallback } = self;
         let (planes, limits, surface) = (&ray.planes, solver.limits, solver.surface.number);
         let Some((point, local)) = solver.follow(start, work)? else {
             return Ok(false);
@@ -165,9 +167,9 @@ impl<P: Point> Search<'_, '_, '_, P> {
             }
             verified = false;
             solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
-            if let Some(root) = from_patch(solver, patch, crossing, First::Entrance, work)? {
+            roots_of_patch(solver, *fallback, patch, crossing, First::Entrance, work, |root, work| {
                 Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
-            }
+            })?;
             Ok(best.map_or(farthest, |best| best.root.depth))
         })?;
         if verified {
@@ -180,7 +182,7 @@ impl<P: Point> Search<'_, '_, '_, P> {
 
     /// The closest point by a search along the ray, front to back, that ends where nothing farther on can be closer.
     fn in_full(&mut self, best: &mut Option<Best<P::Scalar>>, work: &mut Work) -> Result<(), Limit> {
-        let Search { view, ray, nearby, solver } = self;
+        let Search { view, ray, nearby, solver, fallback } = self;
         let (planes, limits) = (&ray.planes, solver.limits);
         work.full_searches += 1;
         nearby.visit(
@@ -193,9 +195,9 @@ impl<P: Point> Search<'_, '_, '_, P> {
                 let range = DepthRange { min: ray.range.min, max: best.map_or(ray.range.max, |best| best.root.depth) };
                 if crossing.overlaps(&range) {
                     solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
-                    if let Some(root) = from_patch(solver, patch, crossing, First::AsCritical, work)? {
+                    roots_of_patch(solver, *fallback, patch, crossing, First::AsCritical, work, |root, work| {
                         Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
-                    }
+                    })?;
                 }
                 Ok(best.map_or(ray.range.max, |best| best.root.depth))
             },

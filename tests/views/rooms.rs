@@ -27,10 +27,14 @@ pub(crate) enum InView {
     Clipping,
     ClippingCoherent,
     ClippingPredicted,
+    /// Newton's methods that fall back on clipping, which they do under `Acceptance::Proved`.
+    NewtonProving,
+    NewtonCoherentProving,
+    NewtonPredictedProving,
 }
 
 impl InView {
-    pub(crate) const ALL: [InView; 7] = [
+    pub(crate) const ALL: [InView; 10] = [
         InView::Newton,
         InView::NewtonCoherent,
         InView::NewtonPredicted,
@@ -38,13 +42,19 @@ impl InView {
         InView::Clipping,
         InView::ClippingCoherent,
         InView::ClippingPredicted,
+        InView::NewtonProving,
+        InView::NewtonCoherentProving,
+        InView::NewtonPredictedProving,
     ];
 
     /// The method whose error allowances it is held to. A predicted method verifies as the coherent one does.
     pub(crate) fn judged_as(self) -> Method {
         match self {
-            InView::Newton => Method::Newton,
-            InView::NewtonCoherent | InView::NewtonPredicted => Method::NewtonCoherent,
+            InView::Newton | InView::NewtonProving => Method::Newton,
+            InView::NewtonCoherent
+            | InView::NewtonPredicted
+            | InView::NewtonCoherentProving
+            | InView::NewtonPredictedProving => Method::NewtonCoherent,
             InView::ClippingBare | InView::Clipping => Method::Clipping,
             InView::ClippingCoherent | InView::ClippingPredicted => Method::ClippingCoherent,
         }
@@ -55,12 +65,19 @@ impl InView {
     }
 
     pub(crate) fn remembers(self) -> bool {
-        !matches!(self, InView::Newton | InView::ClippingBare | InView::Clipping)
+        !matches!(self, InView::Newton | InView::NewtonProving | InView::ClippingBare | InView::Clipping)
     }
 
     /// In which order it searches a line.
     pub(crate) fn order(self) -> Order {
-        if matches!(self, InView::NewtonPredicted | InView::ClippingPredicted) { Order::Depth } else { Order::Surfaces }
+        let by_depth =
+            matches!(self, InView::NewtonPredicted | InView::NewtonPredictedProving | InView::ClippingPredicted);
+        if by_depth { Order::Depth } else { Order::Surfaces }
+    }
+
+    /// Whether it proves what it answers, as far as it is asked to.
+    pub(crate) fn falls_back(self) -> bool {
+        matches!(self, InView::NewtonProving | InView::NewtonCoherentProving | InView::NewtonPredictedProving)
     }
 }
 
@@ -196,14 +213,29 @@ impl<P: Kind> Thread<P> {
         let Thread { newton, clips, remembered, followed, last, work } = self;
         // The kernel goes on counting from ray to ray; the suites ask of each.
         *work = Work::default();
-        let (scratch, room) = (&mut newton.view(), &mut clips.view());
         let mut memory = Following { slots: followed, last: *last };
+        if method.falls_back() {
+            let scratch = &mut newton.view_with(clips.view());
+            let answer = match method {
+                InView::NewtonProving => newton::closest_in_view(view, line, ray, limits, scratch, work),
+                InView::NewtonCoherentProving => {
+                    newton_coherent::closest_in_view(view, line, remembered, scan_line, ray, limits, scratch, work)
+                }
+                _ => newton_predicted::closest_in_view(view, line, &mut memory, scan_line, ray, limits, scratch, work),
+            };
+            *last = memory.last;
+            return answer;
+        }
+        let (scratch, room) = (&mut newton.view(), &mut clips.view());
         let answer = match method {
             InView::Newton => newton::closest_in_view(view, line, ray, limits, scratch, work),
             InView::NewtonCoherent => {
                 newton_coherent::closest_in_view(view, line, remembered, scan_line, ray, limits, scratch, work)
             }
-            InView::NewtonPredicted => {
+            InView::NewtonPredicted
+            | InView::NewtonProving
+            | InView::NewtonCoherentProving
+            | InView::NewtonPredictedProving => {
                 newton_predicted::closest_in_view(view, line, &mut memory, scan_line, ray, limits, scratch, work)
             }
             InView::ClippingBare | InView::Clipping => clipping::closest_in_view(view, line, ray, limits, room, work),

@@ -14,6 +14,7 @@ use crate::output::Output;
 use crate::report::table::Style;
 use crate::report::tables::{Report, SceneReport};
 use crate::scene::paper::{PaperScene, SCENES};
+use crate::scene::trace::Acceptance;
 use crate::settings::{Flags, Settings, SizeFlag};
 use crate::stats::SCHEMA;
 
@@ -73,6 +74,7 @@ pub fn run(args: &TablesArgs) -> Result<(), Failure> {
         version: env!("CARGO_PKG_VERSION"),
         size,
         precision: common.precision,
+        acceptance: common.acceptance,
         repetitions: *repetitions,
         oracle_threads: common.threads,
         seconds: begin.elapsed().as_secs_f64(),
@@ -96,7 +98,11 @@ fn measure(
     flags: &Flags,
 ) -> Result<(SceneReport, Settings), Failure> {
     let scene = paper.load()?;
-    let settings = Settings::of_scene(flags, &scene.description.trace, &scene.source)?;
+    let settings = Settings {
+        // What the paper measured; proofs and their fallback would be measured too.
+        acceptance: flags.acceptance.unwrap_or(Acceptance::Paper),
+        ..Settings::of_scene(flags, &scene.description.trace, &scene.source)?
+    };
     let picture = scene.description.camera.view(size);
     let asked = if skip_oracle {
         None

@@ -3,14 +3,14 @@
 use patchray::limits::{GaveUp, Limits, Work};
 use patchray::line::{Line, Order};
 use patchray::method::{
-    ClipScratch, Followed, Following, Remembered, Scratch, clipping, clipping_coherent, clipping_predicted, newton,
+    ClipScratch, Followed, Following, Remembered, clipping, clipping_coherent, clipping_predicted, newton,
     newton_coherent, newton_predicted,
 };
 use patchray::point::Point;
 use patchray::ray::Hit;
 use patchray::view::{View, ViewRay};
 
-use super::{Clipping, ClippingCoherent, Newton, NewtonCoherent, PENDING};
+use super::{Clipping, ClippingCoherent, Newton, NewtonCoherent, NewtonScratch, PENDING};
 use crate::lower::{NET, ORDER};
 
 /// A method for the rays of a view, over points of type `P`: it looks for the closest hit.
@@ -54,9 +54,6 @@ pub struct NewtonPredicted;
 /// The closest hit by [`patchray::method::clipping_predicted`].
 #[derive(Clone, Copy, Debug)]
 pub struct ClippingPredicted;
-
-/// What Newton's methods need per ray.
-type NewtonScratch<P> = Scratch<P, ORDER, NET>;
 
 /// What the clipping methods need per ray.
 type ClippingScratch<P> = ClipScratch<P, ORDER, NET, PENDING>;

@@ -6,7 +6,7 @@ use super::table::{Style, Table, grouped, percent, seconds};
 use super::times::Times;
 use crate::judge::{Agreement, OracleStats};
 use crate::scene::paper::{Figures, Improvement};
-use crate::scene::trace::{Method, Precision};
+use crate::scene::trace::{Acceptance, Method, Precision};
 
 /// All that was measured. Serialised, it is what `--json` prints.
 #[derive(Clone, Debug, Serialize)]
@@ -19,6 +19,8 @@ pub struct Report {
     pub size: [u32; 2],
     /// The precision of the methods.
     pub precision: Precision,
+    /// Their acceptance.
+    pub acceptance: Acceptance,
     /// How often each method traced each scene for Tables 1 and 2.
     pub repetitions: u32,
     /// The threads of the oracle: all times are of one thread.
@@ -312,6 +314,17 @@ impl Report {
              originals too. Table 4 is of any rays, by trees and grids; there surfaces are searched in the order of \
              the grid's cells, which is front to back only roughly, and more points are found."
                 .to_owned(),
+            match self.acceptance {
+                Acceptance::Paper => {
+                    "What a patch may hold is believed as in the paper (`--acceptance paper`): by eq. (1), and a patch whose \
+                     starts lead to no root is taken for missed. Nothing falls back on clipping."
+                }
+                Acceptance::Proved => {
+                    "What a patch may hold is proved (`--acceptance proved`), or left to clipping: the times are not those \
+                     of the paper's methods alone."
+                }
+            }
+            .to_owned(),
             "Twice: intersection points in excess of the roots that the oracle finds on their ray. Wrong, missed and \
              phantom pixels are by the oracle too."
                 .to_owned(),

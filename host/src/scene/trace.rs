@@ -81,10 +81,10 @@ pub enum Precision {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Acceptance {
-    /// As the paper does: eq. (1), factor 1.
-    #[default]
+    /// As the paper does: eq. (1), factor 1; and a patch whose starts lead to no root is taken for missed.
     Paper,
-    /// Only where at most one hit is proved.
+    /// Only where it is proved that there is no other hit; what Newton's method does not prove is clipped.
+    #[default]
     Proved,
 }
 
@@ -101,7 +101,7 @@ pub struct TraceSettings {
     pub method: Option<Method>,
     /// The precision.
     pub precision: Option<Precision>,
-    /// The acceptance of the coherent methods.
+    /// The acceptance of Newton's methods and the coherent ones.
     pub acceptance: Option<Acceptance>,
     /// Newton iterations per start, at least 1.
     pub newton_iterations: Option<u32>,

@@ -10,6 +10,7 @@
 mod export;
 mod entries;
 mod errors;
+mod proving;
 mod views;
 
 /// Called by nothing but the panic handler, and defined nowhere: where it is wanted, a panic is reachable.

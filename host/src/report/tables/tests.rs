@@ -45,6 +45,7 @@ fn report() -> Report {
         version: "0",
         size: [512, 512],
         precision: Precision::F64,
+        acceptance: Acceptance::Paper,
         repetitions: 1,
         oracle_threads: 2,
         seconds: 9.0,
