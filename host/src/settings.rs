@@ -40,6 +40,9 @@ pub struct Flags {
     /// The share of an interval that a clip has to remove, else the interval is bisected [default: 0.2]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true, help_heading = "Tracing")]
     pub clip_threshold: Option<f64>,
+    /// How far from the ray a root may lie, as a share of the scene's size [default: 4e-13 in f64, 4e-6 in f32]
+    #[arg(long, value_name = "SHARE", value_parser = positive, allow_hyphen_values = true, help_heading = "Tracing")]
+    pub tolerance: Option<f64>,
     /// How far a patch may be from flat, as a share of the scene's diagonal
     #[arg(long, value_name = "SHARE", value_parser = positive, allow_hyphen_values = true, help_heading = "Tracing")]
     pub flatness: Option<f64>,
@@ -212,6 +215,13 @@ pub struct Bounds {
     pub arena_bytes: Option<u64>,
 }
 
+impl Name {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        NAMES.iter().find_map(|&(name, bound)| (bound == self).then_some(name)).unwrap_or("")
+    }
+}
+
 impl Default for Bounds {
     /// The kernel's.
     fn default() -> Self {
@@ -270,6 +280,8 @@ pub struct Settings {
     pub newton_starts: u32,
     /// The share of an interval that a clip has to remove, else the interval is bisected.
     pub clip_threshold: f64,
+    /// How far from the ray a root may lie, in the kernel's frame of the scene; `None` for the precision's default.
+    pub tolerance: Option<f64>,
     /// How far a patch may be from flat, as a share of the scene's diagonal.
     pub flatness: f64,
     /// Voxels of a grid per patch in it.
@@ -293,6 +305,7 @@ impl Default for Settings {
             newton_iterations: limits.newton_iterations,
             newton_starts: limits.newton_starts,
             clip_threshold: limits.clip_threshold,
+            tolerance: None,
             flatness: preparation.subdivision.flatness,
             grid_density: preparation.grid.density,
             threads: u32::try_from(cores).unwrap_or(1).min(MAX_THREADS),
@@ -319,6 +332,7 @@ impl Settings {
         set(&mut settings.newton_iterations, trace.newton_iterations);
         set(&mut settings.newton_starts, trace.newton_starts);
         set(&mut settings.clip_threshold, trace.clip_threshold);
+        settings.tolerance = trace.tolerance;
         set(&mut settings.flatness, trace.flatness);
         set(&mut settings.grid_density, trace.grid_density);
         set(&mut settings.threads, trace.threads);
@@ -339,6 +353,7 @@ impl Settings {
         set(&mut self.newton_iterations, flags.newton_iterations);
         set(&mut self.newton_starts, flags.newton_starts);
         set(&mut self.clip_threshold, flags.clip_threshold);
+        self.tolerance = flags.tolerance.or(self.tolerance);
         set(&mut self.flatness, flags.flatness);
         set(&mut self.grid_density, flags.grid_density);
         set(&mut self.threads, flags.threads);
@@ -353,6 +368,7 @@ impl Settings {
         Limits {
             newton_iterations: self.newton_iterations,
             newton_starts: self.newton_starts,
+            tolerance: self.tolerance.map_or(S::TOLERANCE, S::from_f64),
             acceptance: match self.acceptance {
                 Acceptance::Paper => KernelAcceptance::Paper,
                 Acceptance::Proved => KernelAcceptance::Proved,
@@ -433,10 +449,14 @@ mod tests {
         let mut trace = TraceSettings { newton_starts: Some(2), method: Some(Method::Newton), ..Default::default() };
         let flags = Flags { newton_starts: Some(1), limits: vec![(Name::Voxels, 5)], ..Default::default() };
         trace.clip_threshold = Some(0.3);
+        trace.tolerance = Some(0.25);
         let settings = Settings::of_scene(&flags, &trace, &source).expect("valid");
         assert_eq!((settings.newton_starts, settings.method, settings.limits.voxels), (1, Method::Newton, 5));
         let limits = settings.limits::<f32>();
-        assert_eq!((limits.newton_starts, limits.clip_threshold), (1, 0.3));
+        assert_eq!((limits.newton_starts, limits.clip_threshold, limits.tolerance), (1, 0.3, 0.25));
+        let finer = Flags { tolerance: Some(0.125), ..flags.clone() };
+        let of_scene = Settings::of_scene(&finer, &trace, &source).expect("valid");
+        assert_eq!((of_scene.tolerance, Settings::default().limits::<f32>().tolerance), (Some(0.125), 4e-6));
 
         let limit =
             |name: &str, value| crate::scene::trace::LimitSetting { name: name.to_owned(), value, span: 18..23 };

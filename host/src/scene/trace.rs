@@ -77,6 +77,16 @@ pub enum Precision {
     F64,
 }
 
+impl Precision {
+    /// Its name, as files and the command line have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Precision::F32 => "f32",
+            Precision::F64 => "f64",
+        }
+    }
+}
+
 /// When a coherent method takes a point for the only one of its patch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
@@ -109,6 +119,8 @@ pub struct TraceSettings {
     pub newton_starts: Option<u32>,
     /// The share of an interval, between 0 and 1, that a clip has to remove, else the interval is bisected.
     pub clip_threshold: Option<f64>,
+    /// How far from the ray a root may lie, above 0, as a share of the scene's size.
+    pub tolerance: Option<f64>,
     /// The bound, above 0, to which surfaces are subdivided: less makes more and flatter patches.
     pub flatness: Option<f64>,
     /// Voxels of a grid per patch in it, above 0: more makes smaller voxels.
@@ -139,6 +151,7 @@ pub(super) struct TraceTable {
     newton_iterations: Option<Spanned<u32>>,
     newton_starts: Option<Spanned<u32>>,
     clip_threshold: Option<Spanned<f64>>,
+    tolerance: Option<Spanned<f64>>,
     flatness: Option<Spanned<f64>>,
     grid_density: Option<Spanned<f64>>,
     threads: Option<Spanned<u32>>,
@@ -174,6 +187,7 @@ impl TraceTable {
                 .as_ref()
                 .map(|share| check.share("`clip_threshold`", share))
                 .transpose()?,
+            tolerance: positive("`tolerance`", &self.tolerance)?,
             flatness: positive("`flatness`", &self.flatness)?,
             grid_density: positive("`grid_density`", &self.grid_density)?,
             threads: at_most("`threads`", &self.threads, MAX_THREADS)?,

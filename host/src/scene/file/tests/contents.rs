@@ -79,6 +79,7 @@ fn the_documentation_names_every_field_in_a_scene_that_is_one() {
         "newton_iterations",
         "newton_starts",
         "clip_threshold",
+        "tolerance",
         "flatness",
         "grid_density",
         "threads",
