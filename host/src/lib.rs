@@ -17,4 +17,5 @@ pub mod scene;
 pub mod settings;
 pub mod shade;
 pub mod stats;
+pub mod study;
 pub mod viewed;

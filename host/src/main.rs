@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
-use patchray_host::cmd::{Failure, demo, info, query, render, tables};
+use patchray_host::cmd::{Failure, demo, info, query, render, study, tables};
 
 /// Traces rays against Bézier surfaces themselves, without tessellation.
 ///
@@ -31,6 +31,8 @@ enum Verb {
     Info(info::InfoArgs),
     /// Measure the paper's tables on its four scenes, with the paper's figures beside ours
     Tables(tables::TablesArgs),
+    /// Measure the error and the run time of every method, with one setting at a time moved from its default
+    Study(study::StudyArgs),
 }
 
 fn main() -> ExitCode {
@@ -41,6 +43,7 @@ fn main() -> ExitCode {
         Some(Verb::Query(args)) => query::run(args),
         Some(Verb::Info(args)) => info::run(args),
         Some(Verb::Tables(args)) => tables::run(args),
+        Some(Verb::Study(args)) => study::run(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

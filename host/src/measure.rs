@@ -80,7 +80,7 @@ pub struct Primary {
 }
 
 /// Traces a whole picture with a lane; `each` is given the outcomes of each scan line.
-fn trace_picture(lane: &mut dyn Lane, picture: &View, tally: &mut Tally, mut each: impl FnMut(&[Outcome])) {
+pub(crate) fn trace_picture(lane: &mut dyn Lane, picture: &View, tally: &mut Tally, mut each: impl FnMut(&[Outcome])) {
     let mut outcomes = Vec::new();
     for line in 0..picture.scan_lines() {
         let samples = picture.scan_line(line);
@@ -103,7 +103,7 @@ fn in_turn<T>(scene: &Scene, repetitions: u32, subjects: &mut [T], mut pass: imp
 }
 
 /// How many points are more than the roots that there are on their ray.
-fn found_twice(points: &[u32], truths: &[Truth]) -> u64 {
+pub(crate) fn found_twice(points: &[u32], truths: &[Truth]) -> u64 {
     let excess = |(&points, truth): (&u32, &Truth)| u64::from(points).saturating_sub(truth.roots as u64);
     points.iter().zip(truths).filter(|(_, truth)| !truth.open).map(excess).sum()
 }

@@ -13,6 +13,7 @@ mod all_and_any;
 mod b_splines;
 mod bad_input;
 mod scenes;
+mod study;
 mod tables;
 
 /// A folder with a teapot, a scene of it, and some rays.

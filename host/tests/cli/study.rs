@@ -1,0 +1,117 @@
+//! `patchray study`.
+
+use serde_json::Value;
+
+use super::{Folder, printed, said};
+
+/// Few pixels and few patches: what is measured so means nothing, but all of it is there.
+const SMALL: &str = "study --size 24x16 --repetitions 2 --flatness 0.01";
+
+fn lines(folder: &Folder, name: &str) -> Vec<Value> {
+    folder.text(name).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+}
+
+fn line<'l>(lines: &'l [Value], name: &str) -> &'l Value {
+    lines.iter().find(|line| line["line"] == name).unwrap_or_else(|| panic!("no line {name}"))
+}
+
+#[test]
+fn cells_are_listed_and_shards_part_them() {
+    let folder = Folder::new();
+    let list = printed(&folder.done("study --list"));
+    let all: Vec<&str> = list.lines().collect();
+    assert!(all.contains(&"clipping.f64.default") && all.contains(&"newton-predicted.f32.tolerance.0.001"));
+    let mut parts: Vec<String> = Vec::new();
+    for part in 1..=3 {
+        parts.extend(printed(&folder.done(&format!("study --list --shard {part}/3"))).lines().map(str::to_owned));
+    }
+    let sorted = |mut ids: Vec<String>| {
+        ids.sort();
+        ids
+    };
+    assert_eq!(sorted(parts), sorted(all.iter().map(|&id| id.to_owned()).collect()));
+    let json: Vec<String> =
+        serde_json::from_str(&printed(&folder.done("study --list --json --method newton"))).expect("JSON");
+    assert!(json.len() > 10 && json.iter().all(|id| id.starts_with("newton.")));
+    folder.fails("study --list --shard 4/3", 2, &["1/4"]);
+    folder.fails("study --only clipping.f64.defaul", 2, &["did you mean `clipping.f64.default`?", "--list"]);
+}
+
+#[test]
+fn a_cell_is_measured_once_and_says_all() {
+    let folder = Folder::new();
+    let only = "--only newton-coherent.f64.default --only newton-coherent.f64.newton-steps.4";
+    folder.done(&format!("{SMALL} {only} -o results"));
+    let name = "results/newton-coherent.f64.default.jsonl";
+    let all = lines(&folder, name);
+    assert_eq!((&line(&all, "cell")["method"], &line(&all, "cell")["view"]), (&"newton-coherent".into(), &true.into()));
+    assert_eq!(line(&all, "cell")["settings"]["flatness"], 0.01);
+    assert!(line(&all, "machine")["version"].is_string());
+    let time = line(&all, "time");
+    assert_eq!(time["repetitions"].as_array().map(Vec::len), Some(2));
+    let counts = line(&all, "counts");
+    assert_eq!((&counts["rays"], &counts["gave_up"]), (&384.into(), &serde_json::json!({})));
+    assert!(counts["work"]["newton_steps"].as_u64() > Some(100) && counts["bytes"].as_u64() > Some(1000));
+    let errors = line(&all, "errors");
+    for part in ["t", "residual"] {
+        let max = errors[part]["max"].as_f64().expect("a number");
+        assert!(max > 0.0 && max < 1e-10, "{part}: {max}");
+    }
+    assert_eq!(line(&all, "map")["pixels"].as_str().map(str::len), Some(384));
+    assert_eq!(all.iter().filter(|line| line["line"] == "worst").count(), 10);
+    let limited = lines(&folder, "results/newton-coherent.f64.newton-steps.4.jsonl");
+    assert!(line(&limited, "counts")["gave_up"]["newton-steps"].as_u64() > Some(0));
+
+    // Only what is not finished is measured; half a file is not finished.
+    let finished = folder.text(name);
+    let half = "results/newton-coherent.f64.newton-steps.4.jsonl";
+    let text = folder.text(half);
+    folder.put(half, &text[..text.len() / 2]);
+    let output = folder.done(&format!("{SMALL} {only} -o results --json"));
+    let done: Value = serde_json::from_str(&printed(&output)).expect("JSON");
+    assert_eq!((&done["cells"], &done["finished_before"]), (&2.into(), &1.into()));
+    assert_eq!(folder.text(name), finished, "it was measured again");
+    assert_eq!(line(&lines(&folder, half), "end")["line"], "end");
+    assert!(said(&output).contains("1 finished before, 1 measured"), "{}", said(&output));
+
+    // Another picture, or other settings, do not go into the same folder.
+    folder.fails(&format!("study --size 8x8 {only} -o results"), 2, &["another folder"]);
+}
+
+#[test]
+fn a_replay_answers_as_the_study_did() {
+    let folder = Folder::new();
+    for (scene, id) in [
+        ("", "clipping-predicted.f64.default"),
+        ("scene.toml", "newton-coherent.f32.tolerance.0.001"),
+        ("teapot.bpt", "clipping.f64.clip-steps.10"),
+        ("teapot.bpt", "clipping-coherent.f64.grid-density.0.25"),
+    ] {
+        let results = format!("results-{id}");
+        folder.done(&format!("{SMALL} {scene} --only {id} -o {results}"));
+        let all = lines(&folder, &format!("{results}/{id}.jsonl"));
+        let worst: Vec<&Value> = all.iter().filter(|line| line["line"] == "worst").collect();
+        assert!(worst.len() > 5, "{id}: {}", worst.len());
+        for worst in worst.iter().take(2) {
+            let command = worst["command"].as_str().expect("a command");
+            let words = command.strip_prefix("patchray ").expect("a command of patchray");
+            let replay: Value = serde_json::from_str(&printed(&folder.done(&format!("{words} --json")))).expect("JSON");
+            assert_eq!(
+                (&replay["t"], &replay["kind"], &replay["error"], &replay["margin"]),
+                (&worst["t"], &worst["kind"], &worst["error"], &worst["margin"]),
+                "{command}"
+            );
+            assert!(printed(&folder.done(words)).contains("verdict"));
+            // The ray alone, for `query`.
+            let query = replay["query"].as_str().expect("a command");
+            let (rays, words) = query.split_once(" | patchray ").expect("two commands");
+            let rays = rays.strip_prefix("printf '").and_then(|rays| rays.strip_suffix('\'')).expect("quoted");
+            folder.put("ray.csv", rays.replace("\\n", "\n"));
+            let words = words.replace(" - ", " ray.csv ").replace("fixtures/patches/", "");
+            let answers = printed(&folder.done(&words));
+            assert_eq!(answers.lines().count(), 2, "{query}");
+        }
+    }
+    folder.fails("study --pixel 1,1", 2, &["--only ID"]);
+    folder.fails("study --only clipping.f64.default --size 8x8 --pixel 8,1", 2, &["no pixel 8,1"]);
+}
