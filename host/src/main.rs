@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
-use patchray_host::cmd::{Failure, demo, info, query, render, study, tables};
+use patchray_host::cmd::{Failure, demo, info, query, render, report, study, tables};
 
 /// Traces rays against Bézier surfaces themselves, without tessellation.
 ///
@@ -33,6 +33,8 @@ enum Verb {
     Tables(tables::TablesArgs),
     /// Measure the error and the run time of every method, with one setting at a time moved from its default
     Study(study::StudyArgs),
+    /// Draw what a study measured, as one page
+    Report(report::ReportArgs),
 }
 
 fn main() -> ExitCode {
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         Some(Verb::Info(args)) => info::run(args),
         Some(Verb::Tables(args)) => tables::run(args),
         Some(Verb::Study(args)) => study::run(args),
+        Some(Verb::Report(args)) => report::run(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

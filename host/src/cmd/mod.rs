@@ -5,6 +5,7 @@ pub mod info;
 pub mod load;
 pub mod query;
 pub mod render;
+pub mod report;
 pub mod study;
 pub mod tables;
 

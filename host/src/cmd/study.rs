@@ -132,7 +132,8 @@ pub fn run(args: &StudyArgs) -> Result<(), Failure> {
     if !flags.quiet {
         let shown = path.display();
         say(format_args!(
-            "{} cells in {shown}: {finished_before} finished before, {} measured, of which {} could not be traced",
+            "{} cells in {shown}: {finished_before} finished before, {} measured, of which {} could not be traced\n\
+             patchray report {shown} draws them",
             cells.len(),
             pending.len(),
             failed.len()
@@ -219,7 +220,7 @@ fn manifest(subject: &Subject, flags: &Flags) -> Manifest {
 }
 
 /// The failure for a folder that cannot be used.
-fn refused(error: FolderError) -> Failure {
+pub(super) fn refused(error: FolderError) -> Failure {
     match error {
         FolderError::Other(message) => usage(&message, "name another folder with -o, or remove this one"),
         FolderError::Unreadable(reason) => Failure::Refused {

@@ -115,3 +115,30 @@ fn a_replay_answers_as_the_study_did() {
     folder.fails("study --pixel 1,1", 2, &["--only ID"]);
     folder.fails("study --only clipping.f64.default --size 8x8 --pixel 8,1", 2, &["no pixel 8,1"]);
 }
+
+#[test]
+fn a_report_names_what_is_missing_and_asks_for_nothing_from_elsewhere() {
+    let folder = Folder::new();
+    folder.fails("report results", 3, &["study.json"]);
+    folder.done(&format!("{SMALL} --only clipping.f64.default --only newton.f64.flatness.0.03 -o results"));
+    folder.put("results/clipping.f32.default.jsonl", "{\"line\":\"end\"}\n");
+    let output = folder.done("report results -o page.html");
+    let told = said(&output);
+    for part in
+        ["2 cells drawn, 336 missing", "missing: newton.f32.default", "clipping.f32.default (its file is not whole"]
+    {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    let page = folder.text("page.html");
+    assert!(page.contains("336 of 338 cells are missing") && page.contains("newton.f32.default"));
+    assert!(page.contains("24 × 16 rays") && page.contains("newton.f64.flatness.0.03"));
+    for outside in ["<script", "<link", "@import", "url(", " src=", "href=\"http"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    let drawing = folder.text("page-work-precision-f64.svg");
+    assert!(drawing.starts_with("<svg") && page.contains(&drawing));
+    assert!(folder.names().contains(&"page-map-clipping-f64.svg".to_owned()));
+    // Without a name the page lies with the results, and does not pass for one of them.
+    folder.done("report results --quiet");
+    assert!(folder.text("results/report.html").contains("336 of 338"));
+}

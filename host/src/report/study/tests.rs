@@ -1,0 +1,81 @@
+use super::*;
+use crate::stats::SCHEMA;
+use crate::study::plan::{Cell, plan};
+use crate::study::record::tests::record;
+
+fn report(cells: &[Cell], missing: &[&str]) -> StudyReport {
+    let ids = cells.iter().map(Cell::id).chain(missing.iter().map(|&id| id.to_owned()));
+    StudyReport {
+        manifest: Manifest {
+            schema: SCHEMA,
+            scene: "a <scene>".to_owned(),
+            size: [2, 1],
+            fingerprint: "0".to_owned(),
+            surfaces: 1,
+            diagonal: 1.0,
+            settings: serde_json::Value::Null,
+            cells: ids.collect(),
+        },
+        // The later, the slower and the more exact; every seventh loses one of a hundred rays.
+        records: cells
+            .iter()
+            .enumerate()
+            .map(|(place, cell)| {
+                let lost = if place % 7 == 3 { 10 } else { 0 };
+                record(cell, 1e-6 * (1.0 + place as f64), 1e-5 / (1.0 + place as f64).powi(4), lost)
+            })
+            .collect(),
+        missing: missing.iter().map(|&id| (id.to_owned(), None)).collect(),
+    }
+}
+
+#[test]
+fn the_page_is_whole_and_asks_for_nothing_from_elsewhere() {
+    let cells = plan(None, None);
+    let Rendered { html, drawings } = report(&cells, &["clipping.f64.gone"]).render("study");
+    for text in drawings.iter().map(|drawing| &drawing.svg).chain([&html]) {
+        for outside in ["<script", "<link", "src=", "@import", "url(", "href=\"http", "NaN", "<iframe"] {
+            assert!(!text.contains(outside), "{outside}");
+        }
+        // The name of SVG's own language is the one address there is, and is not fetched.
+        assert_eq!(text.matches("http").count(), text.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
+    }
+    assert!(html.contains("1 of 339 cells are missing") && html.contains("clipping.f64.gone"));
+    assert!(html.contains("a &lt;scene&gt;") && !html.contains("a <scene>"));
+    for part in
+        ["work-precision-f64", "work-precision-f32", "distribution-f64", "clip-threshold-lost-rays", "map-newton-f32"]
+    {
+        assert!(drawings.iter().any(|drawing| drawing.name == part), "{part}");
+    }
+    let names: std::collections::BTreeSet<&str> = drawings.iter().map(|drawing| drawing.name.as_str()).collect();
+    assert_eq!(names.len(), drawings.len());
+    for cell in &cells {
+        assert!(html.contains(&format!(">{}</td>", cell.id())), "{} is not in the table", cell.id());
+    }
+    assert_eq!(html.matches("<code>patchray study --only").count(), 10);
+}
+
+#[test]
+fn failed_cells_stand_on_the_border_and_are_counted() {
+    let cells = plan(None, Some(Precision::F64));
+    let report = report(&cells, &[]);
+    let shown = |point: &&Point| point.record.head.knob != Knob::GridDensity && point.failed();
+    let failed = report.points().iter().filter(shown).count();
+    let drawings = report.render("study").drawings;
+    let work = drawings.iter().find(|drawing| drawing.name == "work-precision-f64").expect("it is drawn");
+    assert!(failed > 10 && work.svg.contains(&format!("{failed} failed")), "{failed}");
+}
+
+#[test]
+fn the_answer_names_the_fastest_that_loses_nothing() {
+    let cells = plan(None, None);
+    let first = &cells[0];
+    let Rendered { html, .. } = report(&cells, &[]).render("study");
+    let coarse = format!("<code>{}</code> in {} with default settings", first.method.name(), first.precision.name());
+    assert!(html.contains(&format!("where 1e-5 will do, {coarse}")), "{}", &html[..4000]);
+    let mut nothing = report(&cells[..4], &[]);
+    nothing.records.drain(..3);
+    let nothing = nothing.render("study").html;
+    assert!(nothing.contains("Nothing that was measured"));
+    assert!(report(&[], &["a"]).render("study").html.contains("1 of 1 cells are missing"));
+}
