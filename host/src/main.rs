@@ -32,6 +32,11 @@ enum Verb {
     /// Measure the paper's tables on its four scenes, with the paper's figures beside ours
     Tables(tables::TablesArgs),
     /// Measure the error and the run time of every method, with one setting at a time moved from its default
+    ///
+    /// Each cell of the study, a method in a precision with a setting, is traced on one thread, held against the oracle, and
+    /// written as a file of JSON lines into the folder that `-o` names, `target/study` if it names none. Cells whose file is
+    /// there are not measured again, so that a study can be stopped and resumed, and spread over machines with `--shard`;
+    /// `patchray report` draws what is there. The picture has 256 × 256 pixels unless `--size` says otherwise.
     Study(study::StudyArgs),
     /// Draw what a study measured, as one page
     Report(report::ReportArgs),

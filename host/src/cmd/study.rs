@@ -25,7 +25,7 @@ use crate::study::truth::of_picture;
 pub struct StudyArgs {
     /// A scene file (.toml) or the surfaces (.bpt, .json) [default: the teapot in the common view]
     pub scene: Option<PathBuf>,
-    /// The size of the picture [default: 192x192]
+    /// The size of the picture.
     #[command(flatten)]
     pub size: SizeFlag,
     /// How often each cell is timed, at least 1; cells of one setting take turns
@@ -52,8 +52,9 @@ pub struct StudyArgs {
 /// Where results go if `-o` does not say.
 const FOLDER: &str = "target/study";
 
-/// The size of the picture if `--size` does not say: the whole study then ends within minutes.
-const SIZE: [u32; 2] = [192, 192];
+/// The size of the picture if `--size` does not say: the whole study then ends within minutes, and the rays of the common
+/// view are exact in `f32`.
+const SIZE: [u32; 2] = [256, 256];
 
 fn pixel(text: &str) -> Result<[u32; 2], String> {
     let pixel = text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));

@@ -38,7 +38,8 @@ pub(super) fn html(
         "<p>{width} × {height} rays of one view against {} surfaces, each answer held against the oracle's. An error is how \
          far t is off along the ray, as a share of the model's diagonal ({:.4}); it is of hits on the closest sheet. A ray is \
          lost if the answer is another sheet, missed, phantom or given up. A cell fails if more than {} of 1000 rays are \
-         lost.</p>",
+         lost. In f32, rays and surfaces are rounded before they are traced, and what that does to the answer is part of the \
+         error.</p>",
         grouped(manifest.surfaces),
         manifest.diagonal,
         FAILED * 1e3
