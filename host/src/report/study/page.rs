@@ -120,7 +120,7 @@ fn note_of(knob: Knob) -> Option<&'static str> {
 }
 
 /// How much faster than default settings others have to be for the answer to name them: less than that is noise.
-const FASTER: f64 = 0.95;
+const FASTER: f64 = 0.9;
 
 /// Which method and setting to take, in a sentence of HTML.
 fn answer(points: &[Point]) -> String {
