@@ -19,7 +19,8 @@ pub enum Kind {
     Right,
     /// The closest hit, but t is off by more than the allowance.
     Off,
-    /// A hit, but another root is nearer to it than the closest is.
+    /// A hit, but another root is nearer to it than the closest is, or none is near: more than a hundredth of the diagonal
+    /// away.
     OtherSheet,
     /// No hit where there is one.
     Missed,
@@ -63,6 +64,10 @@ pub struct Judged {
     pub residual: Option<f64>,
 }
 
+/// How far from the closest root, as a share of the diagonal, a hit may be to count as that root: one farther off is a graze
+/// of something before it, which the oracle sees pass by.
+const FAR: f64 = 1e-2;
+
 /// What answers are held against.
 #[derive(Clone, Copy, Debug)]
 pub struct Judge<'m> {
@@ -89,15 +94,16 @@ impl Judge<'_> {
             return Judged { kind, error: None, residual: None };
         };
         let length = |vector: [f64; 3]| vector[0].hypot(vector[1]).hypot(vector[2]);
+        let speed = length(ray.direction);
         let nearest = roots.iter().map(|t| (t - found.t).abs()).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
         let kind = match agreement {
             Agreement { right: 1, .. } => Kind::Right,
             Agreement { undecided: 1, .. } => Kind::Undecided,
             Agreement { phantom: 1, .. } => Kind::Phantom,
-            _ if nearest.is_some_and(|(place, _)| place == 0) => Kind::Off,
+            _ if nearest.is_some_and(|(place, off)| place == 0 && off * speed <= FAR * self.diagonal) => Kind::Off,
             _ => Kind::OtherSheet,
         };
-        let error = truth.closest.map(|t| (found.t - t).abs() * length(ray.direction) / self.diagonal);
+        let error = truth.closest.map(|t| (found.t - t).abs() * speed / self.diagonal);
         let point = self.model.surfaces.get(found.surface).map(|surface| point_on(surface, found));
         let residual = point.map(|point| {
             length([0, 1, 2].map(|k| point[k] - (ray.origin[k] + found.t * ray.direction[k]))) / self.diagonal
@@ -208,12 +214,13 @@ mod tests {
         let right = judged(hit(1.5), &[1.5, 4.0]);
         assert_eq!((right.kind, right.error), (Kind::Right, Some(0.0)));
         assert!(right.residual.is_some_and(|residual| residual < 1e-15), "{right:?}");
-        let off = judged(hit(1.5 + 3_f64.sqrt() / 10.0), &[1.5, 4.0]);
+        let off = judged(hit(1.5 + 3_f64.sqrt() / 1000.0), &[1.5, 4.0]);
         assert_eq!(off.kind, Kind::Off);
         assert!(
-            (off.error.expect("both hit") - 0.1).abs() < 1e-12 && (off.residual.expect("a hit") - 0.1).abs() < 1e-12
+            (off.error.expect("both hit") - 1e-3).abs() < 1e-12 && (off.residual.expect("a hit") - 1e-3).abs() < 1e-12
         );
         assert_eq!(judged(hit(3.9), &[1.5, 4.0]).kind, Kind::OtherSheet);
+        assert_eq!(judged(hit(1.4), &[1.5, 4.0]).kind, Kind::OtherSheet);
         assert_eq!(judged(hit(3.9), &[]).kind, Kind::Phantom);
         assert_eq!(judged(Outcome::Miss, &[]).kind, Kind::Nothing);
         assert_eq!(judged(Outcome::Miss, &[1.5]).kind, Kind::Missed);
