@@ -2,7 +2,7 @@
 //! code of Bézier clipping.
 //!
 //! Under [`Acceptance::Proved`](crate::limits::Acceptance::Proved) a patch that the ray meets is proved to hold no root or one,
-//! by Newton's method, or is handed over.
+//! by Newton's method, or is handed over. Without a fallback nothing of a patch is proved but that it is met once at most.
 
 use crate::clipper::{ClipRoom, Clipper};
 use crate::limits::{Limit, Limits, Work};
@@ -29,7 +29,7 @@ pub trait Fallback<P: Point> {
     ) -> Result<(), Limit>;
 }
 
-/// No fallback: such a patch is judged by its starts, as in the paper, and counted.
+/// No fallback: a patch is judged by its starts, as in the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct NoFallback;
 

@@ -16,7 +16,7 @@ pub enum Acceptance {
     /// Only where that is proved: of a point found before, by the patch's projection along the ray being injective
     /// ([`Patch::at_most_once`](crate::patch::Patch::at_most_once); a rational patch is never proved so). And of each other patch
     /// that the ray meets Newton's methods prove that it holds no root or one, or hand it to their
-    /// [`Fallback`](crate::fallback::Fallback).
+    /// [`Fallback`](crate::fallback::Fallback), if they have one.
     Proved,
 }
 
@@ -158,7 +158,6 @@ impl<S: Scalar> Limits<S> {
             unresolved: patches,
             excluded: patches,
             handed_over: patches,
-            unproved: patches,
             intersection_points: starts.saturating_add(clips),
             verified: extent.surfaces,
             decided_by_list: extent.surfaces,
@@ -215,12 +214,10 @@ counters! {
     critical,
     /// Patches met of which no start led to a root; taken for no hit, as in the paper.
     unresolved,
-    /// Newton's methods under [`Acceptance::Proved`]: patches met that are proved to hold no root.
+    /// Newton's methods with a fallback, under [`Acceptance::Proved`]: patches met that are proved to hold no root.
     excluded,
     /// The same: patches met that the fallback decided.
     handed_over,
-    /// The same, without a fallback: patches met of which their starts and more prove too little; taken as those say.
-    unproved,
     /// Roots found in the interval, each time they were found: the paper's "intersection points".
     intersection_points,
     /// Coherent: points confirmed at once, alone in the testing ray's list.

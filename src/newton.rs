@@ -8,7 +8,7 @@
 //! enough.
 
 use crate::bernstein::{self, BasisView, Degrees, Full};
-use crate::limits::{Acceptance, Limit, Limits, Work, spend};
+use crate::limits::{Limit, Limits, Work, spend};
 use crate::planes::{Planes, project_net};
 use crate::point::{Flat, Point};
 use crate::ray::Hit;
@@ -240,8 +240,6 @@ pub struct Solver<'a, 's, 'm, P: Point> {
     /// Room for the projected net.
     pub(crate) flat: &'a mut VecView<P::Flat>,
     pub(crate) basis: &'a mut BasisView<'s, P::Scalar>,
-    /// Under [`Acceptance::Proved`], the surface near the root that was solved last, to first order.
-    pub(crate) last: Option<Local<P::Scalar>>,
     /// Whether `flat` holds the net: it is projected for the first start, since most rays that reach a surface's box give
     /// none.
     projected: bool,
@@ -257,21 +255,17 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         flat: &'a mut VecView<P::Flat>,
         basis: &'a mut BasisView<'s, P::Scalar>,
     ) -> Self {
-        Solver { surface: *surface, planes, limits, flat, basis, last: None, projected: false }
+        Solver { surface: *surface, planes, limits, flat, basis, projected: false }
     }
 
     /// Solves from `start`; `None` if the iteration leads to no root, which does not prove that there is none.
     ///
     /// The iteration may leave the patch that gave the start: it works on the whole surface.
     pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
-        let Some(place) = self.iterate(start, work)? else {
-            return Ok(None);
-        };
-        // What it proves of a patch is asked for only then, and else need not go through memory.
-        if self.limits.acceptance == Acceptance::Proved {
-            self.last = Some(place.local);
+        match self.iterate(start, work)? {
+            Some(place) => place.root(&self.surface.net, self.planes, self.limits, self.basis).map(Some),
+            None => Ok(None),
         }
-        place.root(&self.surface.net, self.planes, self.limits, self.basis).map(Some)
     }
 
     /// As [`Solver::solve`], and the surface there to first order.

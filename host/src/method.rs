@@ -5,6 +5,7 @@ use std::marker::PhantomData;
 
 use heapless::Vec as List;
 use patchray::clipper::ClipRoom;
+use patchray::fallback::{Fallback, NoFallback};
 use patchray::grid::Grids;
 use patchray::limits::{GaveUp, Limit, Limits, Work};
 use patchray::method::{
@@ -157,26 +158,51 @@ pub trait Complete<P: Point>: Method<P> {
 
 /// The closest hit by [`patchray::method::newton`].
 #[derive(Clone, Copy, Debug)]
-pub struct Newton;
+pub struct Newton<R>(PhantomData<R>);
 
-/// What Newton's methods need per ray, with what they fall back on.
-#[derive(Debug, Default)]
-pub struct NewtonScratch<P: Point> {
-    newton: Scratch<P, ORDER, NET>,
-    clips: ClipScratch<P, ORDER, NET, PENDING>,
+/// What Newton's methods have per ray, and fall back on where they prove too little: a choice by type, so that what nothing is to
+/// prove pays for nothing.
+pub trait Room<P: Point>: Send + Sync {
+    /// What one thread needs.
+    type Scratch: Default + Send;
+    /// What it falls back on.
+    type Fallback<'s>: Fallback<P>;
+
+    /// The view of it that the methods take.
+    fn view(scratch: &mut Self::Scratch) -> ScratchView<'_, P, Self::Fallback<'_>>;
 }
 
-impl<P: Point> NewtonScratch<P> {
-    /// The view that the methods take.
+/// No fallback, for [`Acceptance::Paper`](patchray::limits::Acceptance::Paper).
+#[derive(Clone, Copy, Debug)]
+pub struct Bare;
+
+/// Bézier clipping, for [`Acceptance::Proved`](patchray::limits::Acceptance::Proved).
+#[derive(Clone, Copy, Debug)]
+pub struct Proving;
+
+impl<P: Point> Room<P> for Bare {
+    type Scratch = Scratch<P, ORDER, NET>;
+    type Fallback<'s> = NoFallback;
+
     #[inline]
-    pub fn view(&mut self) -> ScratchView<'_, P, ClipRoom<'_, P>> {
-        self.newton.view_with(self.clips.view())
+    fn view(scratch: &mut Self::Scratch) -> ScratchView<'_, P> {
+        scratch.view()
+    }
+}
+
+impl<P: Point> Room<P> for Proving {
+    type Scratch = (Scratch<P, ORDER, NET>, ClipScratch<P, ORDER, NET, PENDING>);
+    type Fallback<'s> = ClipRoom<'s, P>;
+
+    #[inline]
+    fn view((newton, clips): &mut Self::Scratch) -> ScratchView<'_, P, ClipRoom<'_, P>> {
+        newton.view_with(clips.view())
     }
 }
 
 /// The closest hit by [`patchray::method::newton_coherent`].
 #[derive(Clone, Copy, Debug)]
-pub struct NewtonCoherent;
+pub struct NewtonCoherent<R>(PhantomData<R>);
 
 /// The closest hit by [`patchray::method::clipping`].
 #[derive(Clone, Copy, Debug)]
@@ -194,9 +220,9 @@ pub struct AllHits<M>(PhantomData<M>);
 #[derive(Clone, Copy, Debug)]
 pub struct AnyHit<M>(PhantomData<M>);
 
-impl<P: Point> Method<P> for Newton {
+impl<P: Point, R: Room<P>> Method<P> for Newton<R> {
     const COHERENT: bool = false;
-    type Scratch = NewtonScratch<P>;
+    type Scratch = R::Scratch;
     type Hits = Hit<P::Scalar>;
 
     #[inline]
@@ -207,11 +233,11 @@ impl<P: Point> Method<P> for Newton {
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Answer<Self::Hits> {
-        Ok(newton::closest(scene, patches, tree, ray, interval, limits, &mut scratch.view(), work)?)
+        Ok(newton::closest(scene, patches, tree, ray, interval, limits, &mut R::view(scratch), work)?)
     }
 }
 
-impl<P: Point> Complete<P> for Newton {
+impl<P: Point, R: Room<P>> Complete<P> for Newton<R> {
     #[inline]
     fn all_hits(
         Views { scene, patches, tree, .. }: &Views<'_, P>,
@@ -220,7 +246,7 @@ impl<P: Point> Complete<P> for Newton {
         hits: &mut List<Hit<P::Scalar>, HITS>,
         work: &mut Work,
     ) -> Result<(), GaveUp<P::Scalar>> {
-        newton::all_hits(scene, patches, tree, ray, interval, limits, &mut scratch.view(), hits, work)
+        newton::all_hits(scene, patches, tree, ray, interval, limits, &mut R::view(scratch), hits, work)
     }
 
     #[inline]
@@ -230,13 +256,13 @@ impl<P: Point> Complete<P> for Newton {
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-        newton::any_hit(scene, patches, tree, ray, interval, limits, &mut scratch.view(), work)
+        newton::any_hit(scene, patches, tree, ray, interval, limits, &mut R::view(scratch), work)
     }
 }
 
-impl<P: Point> Method<P> for NewtonCoherent {
+impl<P: Point, R: Room<P>> Method<P> for NewtonCoherent<R> {
     const COHERENT: bool = true;
-    type Scratch = NewtonScratch<P>;
+    type Scratch = R::Scratch;
     type Hits = Hit<P::Scalar>;
 
     #[inline]
@@ -247,7 +273,7 @@ impl<P: Point> Method<P> for NewtonCoherent {
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Answer<Self::Hits> {
-        let room = &mut scratch.view();
+        let room = &mut R::view(scratch);
         Ok(newton_coherent::closest(scene, patches, grids, memory, line, ray, interval, limits, room, work)?)
     }
 }

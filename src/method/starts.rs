@@ -21,10 +21,30 @@ pub(super) enum First {
     Entrance,
 }
 
-/// The roots of a patch that the ray meets, to `found`, by the rule of [`Limits::acceptance`](crate::limits::Limits::acceptance).
-/// The patch's starts may also lead to a root on another.
+/// The roots of a patch that the ray meets, to `found`: the one that its starts lead to, which may be another's; and with a
+/// fallback, under [`Acceptance::Proved`], all that the patch has.
 #[inline(always)]
 pub(super) fn roots_of_patch<P: Point, F: Fallback<P>>(
+    solver: &mut Solver<'_, '_, '_, P>,
+    fallback: &mut F,
+    patch: &Patch<P::Scalar>,
+    crossing: &Crossing<P::Scalar>,
+    first: First,
+    work: &mut Work,
+    mut found: impl FnMut(Root<P::Scalar>, &mut Work),
+) -> Result<(), Limit> {
+    if F::COMPLETE && solver.limits.acceptance == Acceptance::Proved {
+        return proved_roots(solver, fallback, patch, crossing, first, work, found);
+    }
+    if let Some(root) = from_patch(solver, patch, crossing, first, work)? {
+        found(root, work);
+    }
+    Ok(())
+}
+
+/// The root that a patch's starts lead to and, unless that is proved to be all, the roots of the patch.
+#[inline(never)]
+fn proved_roots<P: Point, F: Fallback<P>>(
     solver: &mut Solver<'_, '_, '_, P>,
     fallback: &mut F,
     patch: &Patch<P::Scalar>,
@@ -36,53 +56,35 @@ pub(super) fn roots_of_patch<P: Point, F: Fallback<P>>(
     let root = from_patch(solver, patch, crossing, first, work)?;
     if let Some(root) = root {
         found(root, work);
-    }
-    if solver.limits.acceptance == Acceptance::Proved {
-        return other_roots(solver, fallback, patch, crossing, root, work, found);
-    }
-    Ok(())
-}
-
-/// Whether a root is proved to be all that the ray meets of a patch, or to leave it nothing.
-#[inline(always)]
-fn is_decided<P: Point>(
-    solver: &Solver<'_, '_, '_, P>,
-    patch: &Patch<P::Scalar>,
-    crossing: &Crossing<P::Scalar>,
-    root: &Option<Root<P::Scalar>>,
-) -> bool {
-    let (Some(root), Some(local)) = (root, &solver.last) else {
-        return false;
-    };
-    (patch.at_most_once(crossing) && patch.domain().holds(root.u, root.v))
-        || Alone::new(root, local, solver.surface.bend).within(patch.domain().bounds())
-}
-
-/// The roots of a patch, unless the one that its starts led to is proved to be all.
-#[inline(never)]
-fn other_roots<P: Point, F: Fallback<P>>(
-    solver: &mut Solver<'_, '_, '_, P>,
-    fallback: &mut F,
-    patch: &Patch<P::Scalar>,
-    crossing: &Crossing<P::Scalar>,
-    root: Option<Root<P::Scalar>>,
-    work: &mut Work,
-    mut found: impl FnMut(Root<P::Scalar>, &mut Work),
-) -> Result<(), Limit> {
-    if is_decided(solver, patch, crossing, &root) {
-        return Ok(());
+        if is_decided(solver, patch, crossing, &root, work)? {
+            return Ok(());
+        }
     }
     let region = Region { sides: patch.domain().bounds(), ..Region::WHOLE };
     match single_of(solver, region, work)? {
         Single::Nothing => work.excluded += 1,
         Single::Root(root, _) => found(root, work),
-        Single::Unproved if F::COMPLETE => {
+        Single::Unproved => {
             work.handed_over += 1;
             fallback.roots(&solver.surface, solver.planes, region, solver.limits, work, found)?;
         }
-        Single::Unproved => work.unproved += 1,
     }
     Ok(())
+}
+
+/// Whether a root is proved to be all that the ray meets of a patch, or to leave it nothing.
+fn is_decided<P: Point>(
+    solver: &mut Solver<'_, '_, '_, P>,
+    patch: &Patch<P::Scalar>,
+    crossing: &Crossing<P::Scalar>,
+    root: &Root<P::Scalar>,
+    work: &mut Work,
+) -> Result<bool, Limit> {
+    if patch.at_most_once(crossing) && patch.domain().holds(root.u, root.v) {
+        return Ok(true);
+    }
+    let local = solver.local([root.u, root.v], work)?;
+    Ok(Alone::new(root, &local, solver.surface.bend).within(patch.domain().bounds()))
 }
 
 /// Tries the starts of a patch in turn until one converges; `None`, counted as unresolved, if none does.

@@ -1,5 +1,7 @@
 //! The kernel's methods for the rays of one view, behind one face.
 
+use std::marker::PhantomData;
+
 use patchray::limits::{GaveUp, Limits, Work};
 use patchray::line::{Line, Order};
 use patchray::method::{
@@ -10,7 +12,7 @@ use patchray::point::Point;
 use patchray::ray::Hit;
 use patchray::view::{View, ViewRay};
 
-use super::{Clipping, ClippingCoherent, Newton, NewtonCoherent, NewtonScratch, PENDING};
+use super::{Clipping, ClippingCoherent, Newton, NewtonCoherent, PENDING, Room};
 use crate::lower::{NET, ORDER};
 
 /// A method for the rays of a view, over points of type `P`: it looks for the closest hit.
@@ -49,7 +51,7 @@ pub trait ViewMethod<P: Point>: Send + Sync {
 
 /// The closest hit by [`patchray::method::newton_predicted`].
 #[derive(Clone, Copy, Debug)]
-pub struct NewtonPredicted;
+pub struct NewtonPredicted<R>(PhantomData<R>);
 
 /// The closest hit by [`patchray::method::clipping_predicted`].
 #[derive(Clone, Copy, Debug)]
@@ -59,10 +61,10 @@ pub struct ClippingPredicted;
 type ClippingScratch<P> = ClipScratch<P, ORDER, NET, PENDING>;
 
 macro_rules! without_coherence {
-    ($method:ident, $kernel:ident, $scratch:ident) => {
-        impl<P: Point> ViewMethod<P> for $method {
+    ($method:ty, $kernel:ident, $scratch:ty, $room:expr $(, $kind:ident)?) => {
+        impl<P: Point $(, $kind: Room<P>)?> ViewMethod<P> for $method {
             const ORDER: Order = Order::Surfaces;
-            type Scratch = $scratch<P>;
+            type Scratch = $scratch;
             type Slot = ();
             const EMPTY: Self::Slot = ();
             type Memory<'c> = ();
@@ -80,17 +82,17 @@ macro_rules! without_coherence {
                 scratch: &mut Self::Scratch,
                 work: &mut Work,
             ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-                $kernel::closest_in_view(view, line, ray, limits, &mut scratch.view(), work)
+                $kernel::closest_in_view(view, line, ray, limits, &mut $room(scratch), work)
             }
         }
     };
 }
 
 macro_rules! with_coherence {
-    ($method:ident, $kernel:ident, $scratch:ident, $order:expr, $slot:ident, $memory:ty, $lend:expr) => {
-        impl<P: Point> ViewMethod<P> for $method {
+    ($method:ty, $kernel:ident, $scratch:ty, $room:expr, $order:expr, $slot:ident, $memory:ty, $lend:expr $(, $kind:ident)?) => {
+        impl<P: Point $(, $kind: Room<P>)?> ViewMethod<P> for $method {
             const ORDER: Order = $order;
-            type Scratch = $scratch<P>;
+            type Scratch = $scratch;
             type Slot = $slot<P::Scalar>;
             const EMPTY: Self::Slot = $slot::EMPTY;
             type Memory<'c> = $memory;
@@ -110,7 +112,7 @@ macro_rules! with_coherence {
                 scratch: &mut Self::Scratch,
                 work: &mut Work,
             ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-                $kernel::closest_in_view(view, line, memory, scan_line, ray, limits, &mut scratch.view(), work)
+                $kernel::closest_in_view(view, line, memory, scan_line, ray, limits, &mut $room(scratch), work)
             }
         }
     };
@@ -121,40 +123,46 @@ fn following<S>(slots: &mut [Followed<S>]) -> Following<'_, S> {
     Following { slots, last: u32::MAX }
 }
 
-without_coherence!(Newton, newton, NewtonScratch);
-without_coherence!(Clipping, clipping, ClippingScratch);
+without_coherence!(Newton<R>, newton, R::Scratch, R::view, R);
+without_coherence!(Clipping, clipping, ClippingScratch<P>, ClipScratch::view);
 
 with_coherence!(
-    NewtonCoherent,
+    NewtonCoherent<R>,
     newton_coherent,
-    NewtonScratch,
+    R::Scratch,
+    R::view,
     Order::Surfaces,
     Remembered,
     &'c mut [Remembered<P::Scalar>],
-    std::convert::identity
+    std::convert::identity,
+    R
 );
 with_coherence!(
     ClippingCoherent,
     clipping_coherent,
-    ClippingScratch,
+    ClippingScratch<P>,
+    ClipScratch::view,
     Order::Surfaces,
     Remembered,
     &'c mut [Remembered<P::Scalar>],
     std::convert::identity
 );
 with_coherence!(
-    NewtonPredicted,
+    NewtonPredicted<R>,
     newton_predicted,
-    NewtonScratch,
+    R::Scratch,
+    R::view,
     Order::Depth,
     Followed,
     Following<'c, P::Scalar>,
-    following
+    following,
+    R
 );
 with_coherence!(
     ClippingPredicted,
     clipping_predicted,
-    ClippingScratch,
+    ClippingScratch<P>,
+    ClipScratch::view,
     Order::Depth,
     Followed,
     Following<'c, P::Scalar>,

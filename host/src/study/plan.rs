@@ -25,8 +25,8 @@ pub enum Knob {
     NewtonIterations,
     /// [`Settings::newton_starts`].
     NewtonStarts,
-    /// [`Settings::acceptance`] is [`Acceptance::Proved`].
-    Proved,
+    /// [`Settings::acceptance`] is [`Acceptance::Paper`].
+    Paper,
     /// The limit `newton-steps`.
     NewtonSteps,
     /// The limit `clip-steps`.
@@ -44,7 +44,7 @@ impl Knob {
         Knob::ClipThreshold,
         Knob::NewtonIterations,
         Knob::NewtonStarts,
-        Knob::Proved,
+        Knob::Paper,
         Knob::NewtonSteps,
         Knob::ClipSteps,
         Knob::GridDensity,
@@ -59,7 +59,7 @@ impl Knob {
             Knob::ClipThreshold => "clip-threshold",
             Knob::NewtonIterations => "newton-iterations",
             Knob::NewtonStarts => "newton-starts",
-            Knob::Proved => "proved",
+            Knob::Paper => "paper",
             Knob::NewtonSteps => "newton-steps",
             Knob::ClipSteps => "clip-steps",
             Knob::GridDensity => "grid-density",
@@ -69,7 +69,7 @@ impl Knob {
     /// The values that it takes in this precision; one that says nothing where it has no value.
     fn values(self, precision: Precision) -> &'static [f64] {
         match (self, precision) {
-            (Knob::Default | Knob::Proved, _) => &[f64::NAN],
+            (Knob::Default | Knob::Paper, _) => &[f64::NAN],
             (Knob::Tolerance, Precision::F64) => &[1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15],
             (Knob::Tolerance, Precision::F32) => &[1e-3, 1e-4, 1e-5, 1e-6, 4e-7, 1e-7],
             (Knob::Flatness, _) => &[3e-2, 1e-2, 5e-3, 2e-3, 1e-3, 3e-4],
@@ -89,7 +89,7 @@ impl Knob {
             Knob::Default | Knob::Tolerance | Knob::Flatness => true,
             Knob::ClipThreshold | Knob::ClipSteps => clips,
             Knob::NewtonIterations | Knob::NewtonStarts | Knob::NewtonSteps => !clips,
-            Knob::Proved => method.is_coherent(),
+            Knob::Paper => method != Method::Clipping,
             Knob::GridDensity => method.is_coherent() && !method.needs_view(),
         }
     }
@@ -131,7 +131,7 @@ impl Cell {
             Knob::ClipThreshold => settings.clip_threshold = value,
             Knob::NewtonIterations => settings.newton_iterations = count,
             Knob::NewtonStarts => settings.newton_starts = count,
-            Knob::Proved => settings.acceptance = Acceptance::Proved,
+            Knob::Paper => settings.acceptance = Acceptance::Paper,
             Knob::NewtonSteps => settings.limits.newton_steps = count,
             Knob::ClipSteps => settings.limits.clip_steps = count,
             Knob::GridDensity => settings.grid_density = value,
@@ -202,13 +202,13 @@ mod tests {
     fn names_are_unique_and_stay() {
         let cells = plan(None, None);
         let ids: BTreeSet<String> = cells.iter().map(Cell::id).collect();
-        assert_eq!((ids.len(), cells.len()), (cells.len(), 338));
+        assert_eq!((ids.len(), cells.len()), (cells.len(), 340));
         for id in [
             "clipping.f64.default",
             "newton.f32.tolerance.4e-7",
             "newton-predicted.f64.flatness.0.03",
             "clipping-coherent.f32.clip-threshold.0.05",
-            "clipping-predicted.f64.proved",
+            "clipping-predicted.f64.paper",
             "newton-coherent.f64.grid-density.0.25",
             "newton.f32.newton-steps.8",
         ] {

@@ -28,7 +28,7 @@ fn query(subject: &Subject, cell: &Cell, ray: &str) -> String {
     let value = cell.value.map_or(String::new(), |value| Shortest(value).to_string());
     let knob = match cell.knob {
         Knob::Default => String::new(),
-        Knob::Proved => "--acceptance proved".to_owned(),
+        Knob::Paper => "--acceptance paper".to_owned(),
         Knob::NewtonSteps | Knob::ClipSteps => format!("--limit {}={value}", cell.knob.name()),
         _ => format!("--{} {value}", cell.knob.name()),
     };

@@ -217,7 +217,7 @@ pub(super) fn title_of(knob: Knob) -> &'static str {
         Knob::ClipThreshold => "the clipping threshold",
         Knob::NewtonIterations => "Newton iterations",
         Knob::NewtonStarts => "Newton starts",
-        Knob::Proved => "proved acceptance",
+        Knob::Paper => "the paper's acceptance",
         Knob::NewtonSteps => "the limit on Newton steps",
         Knob::ClipSteps => "the limit on clips",
         Knob::GridDensity => "the grid's density",

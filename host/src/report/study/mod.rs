@@ -82,7 +82,7 @@ impl Point<'_> {
         let setting = |name: &str| head.settings.get(name).and_then(serde_json::Value::as_f64);
         let limit = |name: &str| head.settings.get("limits")?.get(name)?.as_f64();
         match knob {
-            Knob::Default | Knob::Proved => None,
+            Knob::Default | Knob::Paper => None,
             Knob::Tolerance => setting("tolerance").or(Some(match head.precision {
                 Precision::F32 => f64::from(<f32 as patchray::scalar::Scalar>::TOLERANCE),
                 Precision::F64 => <f64 as patchray::scalar::Scalar>::TOLERANCE,

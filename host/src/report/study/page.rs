@@ -49,8 +49,8 @@ pub(super) fn html(
     add(format_args!("<h2>Methods with default settings</h2>\n{}", tables::defaults(points)));
     add(format_args!(
         "<p class=\"note\">Off: on the right sheet, but by more than the allowance (1e-9 of the diagonal in f64, 5e-6 in \
-         f32, more where a ray all but grazes). Doubled: roots found more than once. Proved: under <code>--acceptance \
-         proved</code>.</p>"
+         f32, more where a ray all but grazes). Doubled: roots found more than once. Paper: under <code>--acceptance \
+         paper</code>.</p>"
     ));
     for (knob, drawings) in sections {
         let head =
@@ -164,7 +164,7 @@ fn setting_of(point: &Point) -> String {
     let value = head.value.map_or(String::new(), |value| format!(" {}", crate::number::Shortest(value)));
     let own = match head.knob {
         Knob::Default => " with default settings".to_owned(),
-        Knob::Proved => " with <code>--acceptance proved</code>".to_owned(),
+        Knob::Paper => " with <code>--acceptance paper</code>".to_owned(),
         Knob::NewtonSteps | Knob::ClipSteps => {
             format!(" with <code>--limit {}={}</code>", head.knob.name(), value.trim())
         }

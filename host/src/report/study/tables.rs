@@ -66,20 +66,20 @@ fn cells(point: &Point) -> Vec<String> {
     ]
 }
 
-/// The cells with default settings, and those under proved acceptance.
+/// The cells with default settings, and those under the paper's acceptance.
 pub(super) fn defaults(points: &[Point]) -> String {
     let mut heads = vec![("method", true), ("", true)];
     heads.extend(HEADS);
     heads.extend([("scene bytes", false), ("bytes per thread", false), ("prepared in ms", false)]);
     let mut shown: Vec<&Point> =
-        points.iter().filter(|point| matches!(point.record.head.knob, Knob::Default | Knob::Proved)).collect();
+        points.iter().filter(|point| matches!(point.record.head.knob, Knob::Default | Knob::Paper)).collect();
     shown.sort_by_key(|point| std::cmp::Reverse(point.record.head.precision.name()));
     let rows: Vec<Vec<String>> = shown
         .into_iter()
         .map(|point| {
             let (head, counts) = (&point.record.head, &point.measured.counts);
-            let proved = if head.knob == Knob::Proved { ", proved" } else { "" };
-            let mut row = vec![format!("{}{proved}", head.method.name()), head.precision.name().to_owned()];
+            let paper = if head.knob == Knob::Paper { ", paper" } else { "" };
+            let mut row = vec![format!("{}{paper}", head.method.name()), head.precision.name().to_owned()];
             row.extend(cells(point));
             row.extend([counts.bytes, counts.bytes_per_thread].map(grouped));
             row.push(format!("{:.1}", 1e3 * point.measured.time.prepare));

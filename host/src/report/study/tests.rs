@@ -40,7 +40,7 @@ fn the_page_is_whole_and_asks_for_nothing_from_elsewhere() {
         // The name of SVG's own language is the one address there is, and is not fetched.
         assert_eq!(text.matches("http").count(), text.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
     }
-    assert!(html.contains("1 of 339 cells are missing") && html.contains("clipping.f64.gone"));
+    assert!(html.contains("1 of 341 cells are missing") && html.contains("clipping.f64.gone"));
     assert!(html.contains("a &lt;scene&gt;") && !html.contains("a <scene>"));
     for part in
         ["work-precision-f64", "work-precision-f32", "distribution-f64", "clip-threshold-lost-rays", "map-newton-f32"]
