@@ -3,7 +3,7 @@
 use patchray_host::lower::Stages;
 use patchray_host::prepared::Prepared;
 use patchray_host::scene::model::Model;
-use patchray_host::scene::trace::{Method, Precision};
+use patchray_host::scene::trace::{Acceptance, Method, Precision};
 use patchray_host::settings::Settings;
 
 /// A method in a precision, with its defaults.
@@ -35,7 +35,9 @@ impl Adapter {
 
     /// The defaults, with this method and precision.
     pub(crate) fn settings(&self) -> Settings {
-        Settings { method: self.method, precision: self.precision, ..Settings::default() }
+        // The paper's rule: else Newton's methods would be judged by what clipping finds for them.
+        let acceptance = Acceptance::Paper;
+        Settings { method: self.method, precision: self.precision, acceptance, ..Settings::default() }
     }
 
     /// The model, made ready with the stages that the method needs.
