@@ -1,8 +1,9 @@
 //! The scene's frame: one exact scale for all coordinates, and the place where a ray enters the scene.
 //!
 //! Coordinates are multiplied by one power of two, chosen from the largest |coordinate|, so that they lie within (−1, 1)
-//! whatever the unit; they are never shifted, since a shift rounds and would part edges that neighbours share to the bit.
-//! Instead a ray's origin is moved, once, to where the ray enters the scene's box.
+//! whatever the unit; they are never shifted by rounding, which would part edges that neighbours share to the bit. Instead a
+//! ray's origin is moved, once, to where the ray enters the scene's box. Of a scene far from 0 the nets may be given relative
+//! to an origin of their own, to which rays are then moved: [`exact_origin`] says where subtracting it rounds nothing.
 
 use crate::planes::{DepthRange, Planes};
 use crate::ray::{Axis, Interval, Ray, RayError};
@@ -77,6 +78,24 @@ impl<S: Scalar> Aabb<S> {
     }
 }
 
+/// The origin nearest to the box's middle from which no coordinate in the box is known worse than from 0: relative to it, all
+/// points of the box are exact.
+///
+/// Along each axis it is the middle, if no coordinate in the box is more than twice another and none is 0 or of another sign;
+/// else 0. Differences from the middle then are exact (P. H. Sterbenz, *Floating-point computation*, 1974, theorem 4.3.1).
+/// A scene whose offset from 0 is many times its size keeps the digits that its coordinates have only if its nets are given
+/// so: see [`SceneOptions::origin`](crate::scene::SceneOptions::origin).
+pub fn exact_origin<S: Scalar>(bounds: &Aabb<S>) -> [S; 3] {
+    core::array::from_fn(|k| {
+        let (low, high) = (bounds.low[k], bounds.high[k]);
+        // Half of each first: their sum might overflow.
+        let middle = low * S::HALF + high * S::HALF;
+        let near = if low > S::ZERO { high * S::HALF <= low } else { high < S::ZERO && low * S::HALF >= high };
+        // Halves of the least numbers round, and a box around nothing has infinite sides.
+        if near && middle.is_finite() && middle.abs() * S::EPSILON >= S::MIN_POSITIVE { middle } else { S::ZERO }
+    })
+}
+
 /// The scene's frame. All of the kernel's stored coordinates are in it; rays and hits are in the caller's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<S> {
@@ -84,9 +103,11 @@ pub struct Frame<S> {
     exponent: i32,
     scale: S,
     unscale: S,
-    /// The largest |coordinate|, in the caller's coordinates.
+    /// Where the nets' coordinates are 0, in the caller's coordinates.
+    origin: [S; 3],
+    /// The nets' largest |coordinate|.
     reach: S,
-    /// The box of the control points, in the caller's coordinates, padded.
+    /// The box of the control points, in the nets' coordinates, padded.
     bounds: Aabb<S>,
     /// The diagonal of the unpadded box, in the frame.
     diagonal: S,
@@ -105,20 +126,39 @@ impl<S: Scalar> Frame<S> {
             exponent,
             scale,
             unscale: S::ONE.times_power_of_two(-exponent),
+            origin: [S::ZERO; 3],
             reach,
             bounds: bounds.padded(reach * S::EPSILON * S::from_u32(PADDING)),
             diagonal: inside.diagonal(),
         }
     }
 
-    /// The k by which coordinates are scaled: a coordinate in the frame is the caller's times 2^k.
+    /// The same for control points that are given relative to `origin`, a point in the coordinates of rays, such as
+    /// [`exact_origin`] says.
+    #[must_use]
+    pub fn with_origin(self, origin: [S; 3]) -> Self {
+        Frame { origin, ..self }
+    }
+
+    /// The k by which coordinates are scaled: a coordinate in the frame is the nets' times 2^k.
     pub fn exponent(&self) -> i32 {
         self.exponent
     }
 
-    /// A point of the caller's coordinates in the frame; exact.
-    pub fn from_caller(&self, point: [S; 3]) -> [S; 3] {
+    /// Where the nets' coordinates are 0, in the caller's coordinates.
+    pub fn origin(&self) -> [S; 3] {
+        self.origin
+    }
+
+    /// A point of the nets' coordinates in the frame; exact.
+    pub fn from_nets(&self, point: [S; 3]) -> [S; 3] {
         point.map(|c| c.times_power_of_two(self.exponent))
+    }
+
+    /// A point of the caller's coordinates in the nets': rounded once per coordinate unless the origin is 0.
+    #[inline(always)]
+    pub(crate) fn relative(&self, point: [S; 3]) -> [S; 3] {
+        core::array::from_fn(|k| point[k] - self.origin[k])
     }
 
     /// The diagonal of the control points' box, in the frame.
@@ -144,7 +184,7 @@ impl<S: Scalar> Frame<S> {
     /// A length, in the caller's units, such that its quotient by a ray's speed along its steepest axis bounds all t in the
     /// scene a few times over, for rays from `origin`.
     pub(crate) fn farthest(&self, origin: [S; 3]) -> S {
-        let distance = S::Vec3::from_array(origin).largest();
+        let distance = S::Vec3::from_array(self.relative(origin)).largest();
         ((distance + self.reach) * S::from_u32(8)).greater(self.unscale)
     }
 
@@ -161,7 +201,7 @@ impl<S: Scalar> Frame<S> {
         if !(speed > S::ZERO) {
             return Err(RayError::ZeroDirection);
         }
-        let distance = S::Vec3::from_array(origin).largest();
+        let distance = S::Vec3::from_array(self.relative(origin)).largest();
         // t grows to (distance + reach) / speed, a few times over on the way, and a step of depth is unscale / speed; said
         // without divisions, which cost more than all the rest here. A product that overflows or vanishes says the same.
         let held = self.farthest(origin) < S::MAX * speed && self.unscale * S::EPSILON >= S::MIN_POSITIVE * speed;
@@ -180,7 +220,7 @@ impl<S: Scalar> Frame<S> {
         let direction = ray.direction.map(|c| c / speed);
         // Not from `direction`, so that neither division waits for the other.
         let inverse = ray.direction.map(|c| speed / c);
-        let (mut origin, mut t_origin) = (ray.origin, S::ZERO);
+        let (mut origin, mut t_origin) = (self.relative(ray.origin), S::ZERO);
         if ray.far {
             (origin, t_origin) = self.approach(ray, axis)?;
         }
@@ -200,12 +240,18 @@ impl<S: Scalar> Frame<S> {
     #[cold]
     #[inline(never)]
     fn approach(&self, ray: &Ray<S>, axis: Axis) -> Option<([S; 3], S)> {
-        let (mut origin, mut t) = (ray.origin, S::ZERO);
+        let (mut origin, mut t) = (self.relative(ray.origin), S::ZERO);
+        // What rounding took of them (Knuth's difference), to be given back where it is not small any more.
+        let mut lost: [S; 3] = core::array::from_fn(|k| {
+            let part = origin[k] - ray.origin[k];
+            (ray.origin[k] - (origin[k] - part)) - (self.origin[k] + part)
+        });
         let middle = (axis.of(&self.bounds.low) + axis.of(&self.bounds.high)) * S::HALF;
         // Twice: the first step is exact sideways but off along the ray by the rounding of a far t; the second is not.
         for _ in 0..2 {
             let step = (middle - axis.of(&origin)) / axis.of(&ray.direction);
-            origin = core::array::from_fn(|k| exact_product_sum(step, ray.direction[k], origin[k]));
+            origin = core::array::from_fn(|k| exact_product_sum(step, ray.direction[k], origin[k]) + lost[k]);
+            lost = [S::ZERO; 3];
             t += step;
         }
         // Where the ray crosses the box's middle plane it is at most a box away sideways, if it meets the box at all.
@@ -325,6 +371,29 @@ mod tests {
         }
         far::<f64>(1e9, 1e-6);
         far::<f32>(1e5, 1e-6);
+    }
+
+    #[test]
+    fn a_scene_far_from_zero_keeps_its_digits() {
+        // A box of extent 1, a million extents from 0 along one axis and around 0 along another: f32 has 1/16 left there.
+        let bounds = Aabb { low: [1e6_f32, -0.5, -3.0], high: [1e6 + 1.0, 0.5, -2.0] };
+        let origin = exact_origin(&bounds);
+        assert_eq!(origin, [1e6 + 0.5, 0.0, -2.5]);
+        let relative = |c: [f32; 3]| core::array::from_fn(|k| c[k] - origin[k]);
+        let frame = Frame::new(Aabb { low: relative(bounds.low), high: relative(bounds.high) }).with_origin(origin);
+        for distance in [1.0, 64.0, 1e5] {
+            // Every number here is exact, and so is the point that the ray meets.
+            let ray = frame.ray([1e6 + 0.25 - distance, 0.125, -2.25], [1.0, 0.0, 0.0]).unwrap();
+            let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
+            let [_, y, z] = planes.origin().map(|c| c / frame.scale());
+            assert_eq!([y, z], [0.125, 0.25]);
+            let depth = (-0.25 * frame.scale() - planes.origin()[0]) * planes.direction()[0];
+            assert!((planes.t(depth) - distance).abs() <= 2.0 * f32::EPSILON * distance);
+        }
+        // Where subtracting would round, or gain nothing, the origin stays.
+        for [low, high] in [[0.0, 1.0], [1.0, 2.5], [-1.0, 1.0], [1e-45, 1e-45], [f32::INFINITY, 0.0]] {
+            assert_eq!(exact_origin(&Aabb { low: [low; 3], high: [high; 3] }), [0.0; 3]);
+        }
     }
 
     #[test]

@@ -68,11 +68,15 @@ pub struct SceneOptions<S> {
     pub density: S,
     /// The most voxels.
     pub voxels: u32,
+    /// Where the nets' coordinates are 0, in the coordinates of rays and hits. Of a scene far from 0 the nets lose digits on
+    /// the way unless they are given relative to a point near them: [`exact_origin`](crate::frame::exact_origin) is one that
+    /// can be subtracted from their control points without rounding, before weights are multiplied in.
+    pub origin: [S; 3],
 }
 
 impl<S: Scalar> Default for SceneOptions<S> {
     fn default() -> Self {
-        SceneOptions { density: S::from_f64(2.0), voxels: 1 << 20 }
+        SceneOptions { density: S::from_f64(2.0), voxels: 1 << 20, origin: [S::ZERO; 3] }
     }
 }
 
@@ -123,8 +127,8 @@ pub struct Scene<'m, P: Point> {
 }
 
 impl<'m, P: Point> Scene<'m, P> {
-    /// Builds a scene from nets in the caller's coordinates: checks them, copies their points into the frame, and builds the
-    /// grid. Too little memory is an error that lists all needs.
+    /// Builds a scene from nets in the caller's coordinates, relative to [`SceneOptions::origin`]: checks them, copies their
+    /// points into the frame, and builds the grid. Too little memory is an error that lists all needs.
     pub fn build(
         nets: &[Net<'_, P>],
         options: &SceneOptions<P::Scalar>,
@@ -136,12 +140,12 @@ impl<'m, P: Point> Scene<'m, P> {
                 .map_err(|error| SceneError::Surface { surface, error })?;
             bounds = bounds.union(control_box(net));
         }
-        let frame = Frame::new(bounds);
+        let frame = Frame::new(bounds).with_origin(options.origin);
         let mut points = Arena::new(memory.points);
         let mut surfaces = Arena::new(memory.surfaces);
         let boxes = |k: usize| {
             let scaled = nets.get(k).map_or(Aabb::EMPTY, control_box);
-            let [low, high] = [scaled.low, scaled.high].map(|corner| frame.from_caller(corner));
+            let [low, high] = [scaled.low, scaled.high].map(|corner| frame.from_nets(corner));
             Aabb { low, high }.padded(Frame::padding())
         };
         for (k, net) in nets.iter().enumerate() {

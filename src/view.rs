@@ -332,7 +332,7 @@ impl<S: Scalar> Lens<S> {
         for vector in [right, up] {
             frame.ray(eye, vector).map_err(ViewError::Ray)?;
         }
-        let eye = frame.from_caller(eye);
+        let eye = frame.from_nets(frame.relative(eye));
         if !(S::Vec3::from_array(eye).largest() <= S::from_u32(NEAR)) {
             return Err(ViewError::Far);
         }

@@ -4,7 +4,9 @@
 //! gives views of them again. Only the stages that a method needs are built: see [`Stages::of`].
 
 use patchray::bernstein::MAX_DEGREE;
+use patchray::frame::{Aabb, exact_origin};
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
+use patchray::limits::Extent;
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::{Plain, Point, Weighted};
 use patchray::scalar::Scalar;
@@ -15,7 +17,8 @@ use patchray::tree::Tree;
 
 use crate::memory::{Bytes, Kind, Slots};
 use crate::scene::model::{Model, ModelSurface};
-use crate::scene::trace::Method;
+use crate::scene::trace::{Acceptance, Method};
+use crate::settings::Settings;
 
 mod error;
 mod view;
@@ -30,19 +33,25 @@ pub const NET: usize = ORDER * ORDER;
 
 /// A kernel point that can be made from a file's numbers.
 pub trait FromFile: Point {
-    /// The point `[x, y, z, w]` of a file, rounded to this precision; the weight is not multiplied in.
-    fn from_file(point: [f64; 4]) -> Self;
+    /// The point `[x, y, z, w]` of a file, rounded to this precision, and then relative to `origin`; the weight is not
+    /// multiplied in.
+    fn from_file(point: [f64; 4], origin: [Self::Scalar; 3]) -> Self;
+}
+
+/// A position of a file relative to an origin.
+fn relative<S: Scalar>(position: [f64; 3], origin: [S; 3]) -> [S; 3] {
+    std::array::from_fn(|k| S::from_f64(position[k]) - origin[k])
 }
 
 impl<S: Scalar> FromFile for Plain<S> {
-    fn from_file([x, y, z, _]: [f64; 4]) -> Self {
-        Plain([x, y, z].map(S::from_f64))
+    fn from_file([x, y, z, _]: [f64; 4], origin: [S; 3]) -> Self {
+        Plain(relative([x, y, z], origin))
     }
 }
 
 impl<S: Scalar> FromFile for Weighted<S> {
-    fn from_file([x, y, z, w]: [f64; 4]) -> Self {
-        Weighted::new([x, y, z].map(S::from_f64), S::from_f64(w))
+    fn from_file([x, y, z, w]: [f64; 4], origin: [S; 3]) -> Self {
+        Weighted::new(relative([x, y, z], origin), S::from_f64(w))
     }
 }
 
@@ -142,9 +151,16 @@ pub struct Lowered<P: Point> {
     view: view::ViewSlots<P>,
 }
 
-/// The control points of a surface in the kernel's type, checked.
-fn points_of<P: FromFile>(surface: &ModelSurface) -> Result<Vec<P>, String> {
-    let points: Vec<P> = surface.points.iter().map(|&point| P::from_file(point)).collect();
+/// The origin to which the model's points lose nothing in this precision.
+fn origin_of<S: Scalar>(model: &Model) -> [S; 3] {
+    let positions = model.surfaces.iter().flat_map(|surface| &surface.points);
+    let bounds = positions.fold(Aabb::EMPTY, |bounds, &[x, y, z, _]| bounds.with([x, y, z].map(S::from_f64)));
+    exact_origin(&bounds)
+}
+
+/// The control points of a surface in the kernel's type, relative to `origin`, checked.
+fn points_of<P: FromFile>(surface: &ModelSurface, origin: [P::Scalar; 3]) -> Result<Vec<P>, String> {
+    let points: Vec<P> = surface.points.iter().map(|&point| P::from_file(point, origin)).collect();
     Net::checked(surface.degree_u, surface.degree_v, &points).map_err(|error| error.to_string())?;
     Ok(points)
 }
@@ -152,7 +168,8 @@ fn points_of<P: FromFile>(surface: &ModelSurface) -> Result<Vec<P>, String> {
 /// The index in `model`, and the reason, of each surface that this point type cannot hold: one that is not valid in the
 /// file, or whose numbers overflow, or whose weights vanish, in `f32`.
 pub fn unfit<P: FromFile>(model: &Model) -> Vec<(usize, String)> {
-    let reasons = model.surfaces.iter().map(|surface| points_of::<P>(surface).err());
+    let origin = origin_of(model);
+    let reasons = model.surfaces.iter().map(|surface| points_of::<P>(surface, origin).err());
     reasons.enumerate().filter_map(|(index, reason)| Some((index, reason?))).collect()
 }
 
@@ -163,9 +180,10 @@ impl<P: FromFile> Lowered<P> {
     /// A surface that the number type cannot hold, or more memory than there is or may be used.
     pub fn build(model: &Model, stages: Stages, preparation: &Preparation<P::Scalar>) -> Result<Self, LowerError> {
         let numbers = |index: u32| model.surfaces.get(index as usize).map_or(0, |surface| surface.number);
+        let origin = origin_of(model);
         let mut nets_points = Vec::new();
         for (index, surface) in model.surfaces.iter().enumerate() {
-            nets_points.push(points_of::<P>(surface).map_err(|reason| LowerError::Surface {
+            nets_points.push(points_of::<P>(surface, origin).map_err(|reason| LowerError::Surface {
                 index,
                 number: surface.number,
                 reason,
@@ -177,7 +195,7 @@ impl<P: FromFile> Lowered<P> {
             nets.push(net.map_err(|error| LowerError::Internal(error.to_string()))?);
         }
         let mut slots = Slots::new(preparation.arena_bytes);
-        let mut lowered = Self::scene_of(&nets, &preparation.scene, stages, &mut slots)?;
+        let mut lowered = Self::scene_of(&nets, &SceneOptions { origin, ..preparation.scene }, stages, &mut slots)?;
         let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());
         if diagonal > 0.0 && !(lowered.scene().frame().diagonal() > P::Scalar::ZERO) {
             return Err(LowerError::Vanishes { diagonal });
@@ -326,6 +344,24 @@ impl<P: Point> Lowered<P> {
     /// The grids; empty if they were not built.
     pub fn grids(&self) -> Grids<'_, P::Scalar> {
         Grids::new(&self.grids, &self.grid_offsets, &self.grid_references)
+    }
+
+    /// How large it is for a method, in the kernel's terms.
+    pub fn extent(&self, settings: &Settings) -> Extent {
+        let count = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+        let Settings { method, acceptance, .. } = *settings;
+        let original = matches!(method, Method::Newton | Method::Clipping);
+        let newtons = matches!(method, Method::Newton | Method::NewtonCoherent | Method::NewtonPredicted);
+        Extent {
+            surfaces: count(self.surfaces.len()),
+            nodes: if method == Method::Newton { count(self.nodes.len()) } else { 0 },
+            patches: count(self.patches.len()),
+            scene_voxels: self.scene().longest_walk(),
+            surface_voxels: if original { 0 } else { self.grids().longest_walks() },
+            spans: 0,
+            walks: if original { 0 } else { 2 },
+            clipped: !newtons || acceptance == Acceptance::Proved,
+        }
     }
 
     /// What was built.

@@ -8,7 +8,7 @@ use patchray::bernstein::{Basis, Jet, MAX_DEGREE};
 use patchray::bspline::{BSpline, BSplineError};
 use patchray::clipper::Clipper;
 use patchray::domain::Domain;
-use patchray::frame::{Aabb, Frame};
+use patchray::frame::{Aabb, Frame, exact_origin};
 use patchray::grid::{Grid, GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::limits::{Extent, GaveUp, Limit, Limits, Work};
 use patchray::measure::Measure;
@@ -569,6 +569,7 @@ pub struct OfFrame<S> {
     ts: (S, Option<S>),
     interval: Option<Interval<S>>,
     vector: [[S; 3]; 2],
+    origin_of_nets: [S; 3],
     empty: bool,
 }
 
@@ -582,9 +583,10 @@ extern "C" fn frame<P: Point>(
     out: &mut OfFrame<P::Scalar>,
 ) {
     let (point, t) = (&asked.origin, asked.interval[0]);
-    out.frame = Frame::new(*bounds);
+    out.frame = Frame::new(*bounds).with_origin(exact_origin(bounds));
     out.exponent = frame.exponent();
-    out.point = frame.from_caller(*point);
+    out.origin_of_nets = frame.origin();
+    out.point = frame.from_nets(*point);
     let vector = <P::Scalar as Scalar>::Vec3::from_array(*point);
     out.lengths = [frame.diagonal(), bounds.diagonal(), Frame::<P::Scalar>::padding(), vector.length()];
     out.vector = [vector.unit().to_array(), bounds.sides()];
