@@ -6,83 +6,100 @@
 
 use super::injectivity::Derivatives;
 use super::net::{Degrees, Point, surface_jet};
+use super::real::Real;
 
 /// A domain of a surface: its lower corner and its extent in u and v, both dyadic.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Domain {
+pub(super) struct Domain<R> {
     /// The least (u, v).
-    pub(super) corner: [f64; 2],
+    pub(super) corner: [R; 2],
     /// The extents.
     pub(super) size: [f64; 2],
 }
 
-impl Domain {
+impl<R: Real> Domain<R> {
+    /// All of a surface.
+    pub(super) fn whole() -> Domain<R> {
+        Domain { corner: [R::ZERO; 2], size: [1.0; 2] }
+    }
+
     /// The surface's parameters at a point of the domain, itself from 0 to 1.
-    pub(super) fn at(&self, x: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|k| self.corner[k] + self.size[k] * x[k])
+    pub(super) fn at(&self, x: [R; 2]) -> [R; 2] {
+        [0, 1].map(|k| self.corner[k] + x[k].times(self.size[k]))
     }
 }
 
 /// What an injective domain holds.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Content {
+pub(super) enum Content<R> {
     /// One root, at these parameters of the surface. It may lie outside the domain by no more than rounding.
-    Root([f64; 2]),
+    Root([R; 2]),
     /// No root; the plane distance from the ray is at least about this, in homogeneous units.
     Nothing(f64),
 }
 
-/// Newton steps before the fixed-matrix iteration takes over: a domain with q ≤ 1/2 converges in about 5.
-const NEWTON_STEPS: usize = 12;
+/// Newton steps before the fixed-matrix iteration takes over: a domain with q ≤ 1/2 converges in about 5 in f64, and
+/// every step doubles the digits.
+const fn newton_steps<R: Real>() -> usize {
+    7 + R::DIGITS.ilog2() as usize
+}
 
 /// Steps with the fixed matrix: enough to halve the radius from 1/2 to the least floor.
-const MATRIX_STEPS: usize = 53;
+const fn matrix_steps<R: Real>() -> usize {
+    R::DIGITS
+}
 
 /// Finds what `domain` holds, its derivative coefficients having q ≤ 1/2. `error` bounds the rounding error of a
 /// homogeneous plane distance on the domain when evaluated on `net`, the whole surface's.
-pub(super) fn content(degrees: Degrees, net: &[Point], domain: Domain, d: &Derivatives, error: f64) -> Content {
-    let evaluate = |x: [f64; 2]| {
+pub(super) fn content<R: Real>(
+    degrees: Degrees,
+    net: &[Point<R>],
+    domain: Domain<R>,
+    d: &Derivatives<R>,
+    error: f64,
+) -> Content<R> {
+    let evaluate = |x: [R; 2]| {
         let [u, v] = domain.at(x);
         surface_jet(degrees, net, u, v)
     };
     let coarsest = if domain.size[0] < domain.size[1] { domain.size[0] } else { domain.size[1] };
     // No step can be told from zero below this: the error of F through A, and that of the surface's parameters.
-    let floor = d.inverse_norm() * error + 2.0 * f64::EPSILON / coarsest;
+    let floor = d.inverse_norm() * error + 2.0 * R::EPS / coarsest;
 
-    let newton = |x: [f64; 2]| {
+    let newton = |x: [R; 2]| {
         let jet = evaluate(x);
-        let [a, b] = [0, 1].map(|k| jet.first[k].map(|y| y * domain.size[k]));
+        let [a, b] = [0, 1].map(|k| jet.first[k].map(|y| y.times(domain.size[k])));
         let f = jet.point;
         let determinant = a[0] * b[1] - a[1] * b[0];
-        [(f[0] * b[1] - f[1] * b[0]) / determinant, (a[0] * f[1] - a[1] * f[0]) / determinant]
+        R::over([f[0] * b[1] - f[1] * b[0], a[0] * f[1] - a[1] * f[0]], determinant)
     };
-    let small = |step: [f64; 2], part: f64| step.iter().all(|s| s.abs() <= part * floor);
+    let small = |step: [R; 2], part: f64| step.iter().all(|s| s.abs().to_f64() <= part * floor);
 
     // Newton from the centre: if it settles within the domain, that is the one root. The step after a small one brings
     // the digits that the floor, a bound for the whole domain, does not promise.
-    let mut x = [0.5; 2];
+    let mut x = [R::ONE.half(); 2];
     let mut settled = false;
-    for _ in 0..NEWTON_STEPS {
+    for _ in 0..newton_steps::<R>() {
         let step = newton(x);
         x = [x[0] - step[0], x[1] - step[1]];
         if small(step, 2.0) {
             if settled {
-                if x.iter().all(|y| (0.0..=1.0).contains(y)) {
+                if x.iter().all(|y| (R::ZERO..=R::ONE).contains(y)) {
                     return Content::Root(domain.at(x));
                 }
                 break;
             }
             settled = true;
         }
-        if !x.iter().all(|y| (-1.0..=2.0).contains(y)) {
+        if !x.iter().all(|y| (-1.0..=2.0).contains(&y.to_f64())) {
             break;
         }
     }
 
-    // Ends when the radius, halved by every step but for the floor, is near it; the floor is above 2⁻⁵².
-    let mut x = [0.5; 2];
+    // Ends when the radius, halved by every step but for the floor, is near it; the floor is above EPS.
+    let mut x = [R::ONE.half(); 2];
     let mut radius = 0.5;
-    for _ in 0..MATRIX_STEPS {
+    for _ in 0..matrix_steps::<R>() {
         if radius <= 4.0 * floor {
             break;
         }
@@ -91,9 +108,10 @@ pub(super) fn content(degrees: Degrees, net: &[Point], domain: Domain, d: &Deriv
         let mut outside = 0.0;
         for k in 0..2 {
             let moved = x[k] - (d.inverse[k][0] * f[0] + d.inverse[k][1] * f[1]);
-            x[k] = moved.clamp(0.0, 1.0);
-            if (moved - x[k]).abs() > outside {
-                outside = (moved - x[k]).abs();
+            x[k] = moved.clamp_unit();
+            let beyond = (moved - x[k]).abs().to_f64();
+            if beyond > outside {
+                outside = beyond;
             }
         }
         if outside > radius {
@@ -113,7 +131,7 @@ mod tests {
     use super::*;
 
     /// The root of F = (x − a + (x − a)²/8, y − b) on the unit square, as a 2 × 1 net.
-    fn solve(a: f64, b: f64) -> Content {
+    fn solve(a: f64, b: f64) -> Content<f64> {
         let degrees = Degrees { m: 2, n: 1 };
         // Coefficients of c0 + c1 x + x²/8 in degree 2.
         let (c0, c1) = (-a + a * a / 8.0, 1.0 - a / 4.0);
@@ -125,8 +143,7 @@ mod tests {
         }
         let d = derivatives(degrees, &net, mean_derivatives(degrees, &net), 1e-16);
         assert!(d.contraction < 0.5);
-        let domain = Domain { corner: [0.0; 2], size: [1.0; 2] };
-        content(degrees, &net, domain, &d, 1e-16)
+        content(degrees, &net, Domain::whole(), &d, 1e-16)
     }
 
     #[test]

@@ -4,31 +4,31 @@
 //! same ratios. Neighbours that share a curve in another form (another degree, a part of it, points apart by more than
 //! rounding) count as having outer borders there, which can only lower a margin.
 
-use super::frame::EPS;
 use super::net::{Degrees, MAX_ORDER, Point, curve_jet};
+use super::real::Real;
 
 /// The four edges of a surface, by number: u = 0, u = 1, v = 0, v = 1.
 pub(super) const EDGES: usize = 4;
 
 /// A surface's edge and how it continues.
 #[derive(Clone, Debug)]
-struct Edge {
+struct Edge<R> {
     /// The homogeneous control points of the edge.
-    curve: Vec<Point>,
+    curve: Vec<Point<R>>,
     /// Those of the row next to it.
-    inner: Vec<Point>,
+    inner: Vec<Point<R>>,
     /// Numbers of the edges that are one seam with this, and whether they run the other way.
     partners: Vec<(usize, bool)>,
 }
 
 /// All edges of a model.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Edges {
-    edges: Vec<Edge>,
+#[derive(Clone, Debug)]
+pub(super) struct Edges<R> {
+    edges: Vec<Edge<R>>,
 }
 
 /// One edge's control points `[x, y, z, w]` and those of the row next to it, of a net that is not multiplied out.
-fn rows(degrees: Degrees, points: &[Point], edge: usize) -> [Vec<Point>; 2] {
+fn rows<R: Real>(degrees: Degrees, points: &[Point<R>], edge: usize) -> [Vec<Point<R>>; 2] {
     let Degrees { m, n } = degrees;
     let along_v = |i: usize| (0..=n).map(|j| points[i * (n + 1) + j]).collect();
     let along_u = |j: usize| (0..=m).map(|i| points[i * (n + 1) + j]).collect();
@@ -40,25 +40,26 @@ fn rows(degrees: Degrees, points: &[Point], edge: usize) -> [Vec<Point>; 2] {
     }
 }
 
-fn homogeneous(points: &[Point]) -> Vec<Point> {
+fn homogeneous<R: Real>(points: &[Point<R>]) -> Vec<Point<R>> {
     points.iter().map(|p| [p[0] * p[3], p[1] * p[3], p[2] * p[3], p[3]]).collect()
 }
 
 /// Whether two control polygons are the same to within `tolerance`.
-fn same<'a>(a: &[Point], b: impl ExactSizeIterator<Item = &'a Point>, tolerance: f64) -> bool {
+fn same<'a, R: Real>(a: &[Point<R>], b: impl ExactSizeIterator<Item = &'a Point<R>>, tolerance: f64) -> bool {
     let mut ratio = None;
     a.len() == b.len()
         && a.iter().zip(b).all(|(p, q)| {
             let weights = p[3] / q[3];
-            let first: f64 = *ratio.get_or_insert(weights);
-            (weights / first - 1.0).abs() <= 8.0 * EPS && (0..3).all(|k| (p[k] - q[k]).abs() <= tolerance)
+            let first = *ratio.get_or_insert(weights);
+            (weights / first - R::ONE).abs().to_f64() <= 8.0 * R::EPS
+                && (0..3).all(|k| (p[k] - q[k]).abs().to_f64() <= tolerance)
         })
 }
 
-impl Edges {
+impl<R: Real> Edges<R> {
     /// The edges of surfaces given by degrees and control points; those of surface `s` are numbers `4 s` to `4 s + 3`.
     /// Points are the same if no coordinate differs by more than `tolerance`.
-    pub(super) fn new<'a>(surfaces: impl Iterator<Item = (Degrees, &'a [Point])>, tolerance: f64) -> Edges {
+    pub(super) fn new<'a>(surfaces: impl Iterator<Item = (Degrees, &'a [Point<R>])>, tolerance: f64) -> Edges<R> {
         let mut polygons = Vec::new();
         let mut edges = Vec::new();
         for (degrees, points) in surfaces {
@@ -69,12 +70,12 @@ impl Edges {
             }
         }
         // Same polygons have the same least x: only edges that adjoin in this order need a comparison.
-        let least = |k: usize| polygons[k].iter().fold(f64::INFINITY, |m, p| if p[0] < m { p[0] } else { m });
-        let mut order: Vec<(f64, usize)> = (0..polygons.len()).map(|k| (least(k), k)).collect();
-        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let least = |k: usize| polygons[k].iter().fold(R::INFINITY, |m, p| if p[0] < m { p[0] } else { m });
+        let mut order: Vec<(R, usize)> = (0..polygons.len()).map(|k| (least(k), k)).collect();
+        order.sort_by(|a, b| a.0.order(&b.0));
         for (position, &(x, a)) in order.iter().enumerate() {
             for &(other, b) in &order[position + 1..] {
-                if other > x + tolerance {
+                if other > x + R::new(tolerance) {
                     break;
                 }
                 let forward = same(&polygons[a], polygons[b].iter(), tolerance);
@@ -90,9 +91,9 @@ impl Edges {
     /// Whether, seen along `direction`, another surface carries on across this edge at its parameter `s`: some surface
     /// with the same edge lies on its other side. It does not at an outer border, nor at a crease whose two sides fall
     /// on one another in that view; a collapsed edge, having no sides, never continues.
-    pub(super) fn continues(&self, edge: usize, s: f64, direction: [f64; 3]) -> bool {
+    pub(super) fn continues(&self, edge: usize, s: R, direction: [R; 3]) -> bool {
         let edge = &self.edges[edge];
-        let side = |e: &Edge, s: f64, tangent: [f64; 3]| {
+        let side = |e: &Edge<R>, s: R, tangent: [R; 3]| {
             let [on, _, _] = evaluate(&e.curve, s);
             let [off, _, _] = evaluate(&e.inner, s);
             let inward = [0, 1, 2].map(|k| off[k] / off[3] - on[k] / on[3]);
@@ -104,14 +105,14 @@ impl Edges {
         let tangent = [0, 1, 2].map(|k| by_s[k] - on[k] / on[3] * by_s[3]);
         let own = side(edge, s, tangent);
         edge.partners.iter().any(|&(other, reversed)| {
-            let s = if reversed { 1.0 - s } else { s };
-            side(&self.edges[other], s, tangent) * own < 0.0
+            let s = if reversed { R::ONE - s } else { s };
+            side(&self.edges[other], s, tangent) * own < R::ZERO
         })
     }
 }
 
-fn evaluate(curve: &[Point], s: f64) -> [Point; 3] {
-    let mut c = [[0.0; 4]; MAX_ORDER];
+fn evaluate<R: Real>(curve: &[Point<R>], s: R) -> [Point<R>; 3] {
+    let mut c = [[R::ZERO; 4]; MAX_ORDER];
     c[..curve.len()].copy_from_slice(curve);
     curve_jet(curve.len() - 1, &mut c, s)
 }
@@ -121,7 +122,7 @@ mod tests {
     use super::*;
 
     /// A roof over the ridge x = 0: two bilinear surfaces, the second running the other way along it.
-    fn roof() -> Edges {
+    fn roof() -> Edges<f64> {
         let one = Degrees { m: 1, n: 1 };
         let left = [[-1.0, 0.0, -1.0, 1.0], [-1.0, 1.0, -1.0, 1.0], [0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]];
         let right = [[0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0], [1.0, 1.0, -1.0, 1.0], [1.0, 0.0, -1.0, 1.0]];

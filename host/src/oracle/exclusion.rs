@@ -4,6 +4,8 @@
 //! line through the origin of the plane of distances has the whole net on one side (T. Nishita, T. W. Sederberg,
 //! M. Kakimoto, 1990, section 3, with lines of any direction).
 
+use super::real::Real;
+
 /// The widest gap that a line leaves between a net and the ray.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Gap {
@@ -22,20 +24,22 @@ const FIXED: [[f64; 2]; 4] = [
 ];
 
 /// The widest gap over the fixed lines and over those along each of `tangents`, the net's mean derivatives; the search
-/// ends early at a gap of `enough`. `distances` are the control points' two plane distances, not homogeneous.
+/// ends early at a gap of `enough`. `places` are the control points' two plane distances and depths, not homogeneous.
 ///
 /// Lines along the tangents separate a nearly flat piece as its own edges would; where the surface folds over as seen
 /// from the ray, both run along the fold, and no other line separates.
-pub(super) fn widest_gap(distances: &[[f64; 2]], tangents: [[f64; 2]; 2], enough: f64) -> Gap {
+pub(super) fn widest_gap<R: Real>(places: &[[R; 3]], tangents: [[R; 2]; 2], enough: f64) -> Gap {
     let mut best = Gap::default();
-    let along = tangents.map(|[x, y]| {
+    // Lines need not run exactly along a tangent.
+    let along = tangents.map(|tangent| {
+        let [x, y] = tangent.map(R::to_f64);
         let length = (x * x + y * y).sqrt();
         [-y / length, x / length]
     });
     for [x, y] in FIXED.into_iter().chain(along) {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for p in distances {
-            let d = x * p[0] + y * p[1];
+        let (mut low, mut high) = (R::INFINITY, -R::INFINITY);
+        for p in places {
+            let d = p[0].times(x) + p[1].times(y);
             if d < low {
                 low = d;
             }
@@ -44,9 +48,9 @@ pub(super) fn widest_gap(distances: &[[f64; 2]], tangents: [[f64; 2]; 2], enough
             }
         }
         // A zero tangent gives NaN throughout, which leaves low > high: no line.
-        let width = if low > -high { low } else { -high };
+        let width = if low > -high { low } else { -high }.to_f64();
         if low <= high && width > best.width {
-            best = Gap { width, extent: high - low };
+            best = Gap { width, extent: high.less(low) };
             if width >= enough {
                 break;
             }
@@ -61,16 +65,16 @@ mod tests {
 
     #[test]
     fn a_slanted_sliver_is_separated_along_its_own_edge() {
-        let distances = [[-10.0, -3.0], [10.0, 3.1], [-9.0, -2.6], [11.0, 3.4]];
-        let blind = widest_gap(&distances, [[0.0, 0.0]; 2], f64::INFINITY);
+        let places = [[-10.0, -3.0, 0.0], [10.0, 3.1, 0.0], [-9.0, -2.6, 0.0], [11.0, 3.4, 0.0]];
+        let blind = widest_gap(&places, [[0.0, 0.0]; 2], f64::INFINITY);
         assert_eq!(blind.width, 0.0);
-        let gap = widest_gap(&distances, [[20.0, 6.05], [1.0, 0.35]], f64::INFINITY);
+        let gap = widest_gap(&places, [[20.0, 6.05], [1.0, 0.35]], f64::INFINITY);
         assert!(gap.width > 0.02 && gap.width < 0.03, "{gap:?}");
     }
 
     #[test]
     fn a_net_about_the_origin_has_no_gap() {
-        let distances = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
-        assert_eq!(widest_gap(&distances, [[2.0, 0.0], [0.0, 2.0]], 1.0).width, 0.0);
+        let places = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        assert_eq!(widest_gap(&places, [[2.0, 0.0], [0.0, 2.0]], 1.0).width, 0.0);
     }
 }

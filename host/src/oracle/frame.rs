@@ -5,51 +5,50 @@
 //! third is its depth, a length along the ray.
 
 use super::net::Point;
-
-/// The unit of rounding that every bound here is stated in: twice the largest relative error of one operation.
-pub(super) const EPS: f64 = f64::EPSILON;
+use super::real::Real;
 
 /// A ray's frame.
 #[derive(Clone, Debug)]
-pub(super) struct Frame {
-    /// The frame's origin: the ray's point nearest to the model's centre, rounded once per coordinate.
-    origin: [f64; 3],
+pub(super) struct Frame<R> {
+    /// The frame's origin: the ray's point nearest to the model's centre, as far as numbers can state it.
+    origin: [R; 3],
+    /// What that point may be off by, apart from the rounding of its coordinates.
+    slip: f64,
     /// The ray's parameter at that point.
-    shift: f64,
+    shift: R,
     /// The length of the ray's direction.
-    length: f64,
+    length: R,
     /// The normals of the two planes and the ray's direction, all of length 1.
-    axes: [[f64; 3]; 3],
+    axes: [[R; 3]; 3],
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn unit(a: [f64; 3]) -> [f64; 3] {
-    let length = dot(a, a).sqrt();
-    a.map(|x| x / length)
+fn unit<R: Real>(a: [R; 3]) -> [R; 3] {
+    R::over(a, dot(a, a).sqrt())
 }
 
-impl Frame {
+impl<R: Real> Frame<R> {
     /// The frame of the ray `origin + t direction`, for a model about `centre`; `None` if a number is not finite, the
-    /// direction is zero, or the parameter of the point nearest to `centre` cannot be held in f64.
-    pub(super) fn new(origin: [f64; 3], direction: [f64; 3], centre: [f64; 3]) -> Option<Frame> {
+    /// direction is zero, or the parameter of the point nearest to `centre` is beyond all numbers.
+    pub(super) fn new(origin: [f64; 3], direction: [f64; 3], centre: [R; 3]) -> Option<Frame<R>> {
         let largest = direction.iter().fold(0.0, |m: f64, x| if x.abs() > m { x.abs() } else { m });
         if !(origin.iter().chain(&direction).all(|x| x.is_finite()) && largest > 0.0) {
             return None;
         }
-        let scaled = direction.map(|x| x / largest);
+        let scaled = R::over(direction.map(R::new), R::new(largest));
         let along = unit(scaled);
-        let length = largest * dot(scaled, scaled).sqrt();
-        let to_centre = [centre[0] - origin[0], centre[1] - origin[1], centre[2] - origin[2]];
-        let shift = dot(to_centre, along) / length;
-        // A fused product and sum rounds once, so the moved origin is as near to the ray as f64 can state a point.
-        let moved = [0, 1, 2].map(|k| shift.mul_add(direction[k], origin[k]));
+        let length = dot(scaled, scaled).sqrt().times(largest);
+        let to_centre = [0, 1, 2].map(|k| centre[k] - R::new(origin[k]));
+        let distance = dot(to_centre, along);
+        let shift = distance / length;
+        let moved = [0, 1, 2].map(|k| shift.on_ray(origin[k], direction[k]));
         if !(length.is_finite() && shift.is_finite() && moved.iter().all(|x| x.is_finite())) {
             return None;
         }
@@ -59,49 +58,56 @@ impl Frame {
                 least = k;
             }
         }
-        let mut axis = [0.0; 3];
-        axis[least] = 1.0;
+        let mut axis = [R::ZERO; 3];
+        axis[least] = R::ONE;
         let first = unit(cross(axis, along));
-        Some(Frame { origin: moved, shift, length, axes: [first, cross(along, first), along] })
+        Some(Frame {
+            origin: moved,
+            slip: R::SLIP * distance.to_f64().abs(),
+            shift,
+            length,
+            axes: [first, cross(along, first), along],
+        })
     }
 
     /// The ray's unit direction in the model's coordinates.
-    pub(super) fn direction(&self) -> [f64; 3] {
+    pub(super) fn direction(&self) -> [R; 3] {
         self.axes[2]
     }
 
     /// The ray's parameter at a depth.
-    pub(super) fn parameter(&self, depth: f64) -> f64 {
+    pub(super) fn parameter(&self, depth: R) -> R {
         self.shift + depth / self.length
     }
 
     /// The depth at a parameter of the ray; infinite parameters have infinite depths.
-    pub(super) fn depth(&self, t: f64) -> f64 {
-        (t - self.shift) * self.length
+    pub(super) fn depth(&self, t: f64) -> R {
+        if t.is_infinite() { R::new(t) } else { (R::new(t) - self.shift) * self.length }
     }
 
     /// A control point `[x, y, z, w]` in the frame, homogeneous.
-    pub(super) fn project(&self, point: Point) -> Point {
+    pub(super) fn project(&self, point: Point<R>) -> Point<R> {
         let offset = [0, 1, 2].map(|k| point[k] - self.origin[k]);
         let [a, b, c] = self.axes.map(|axis| dot(axis, offset) * point[3]);
         [a, b, c, point[3]]
     }
 
     /// A bounding box in the frame: its centre there and half its extent along each axis.
-    pub(super) fn project_box(&self, centre: [f64; 3], half: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+    pub(super) fn project_box(&self, centre: [R; 3], half: [R; 3]) -> ([R; 3], [R; 3]) {
         let offset = [0, 1, 2].map(|k| centre[k] - self.origin[k]);
-        (self.axes.map(|axis| dot(axis, offset)), self.axes.map(|axis| dot(axis.map(f64::abs), half)))
+        (self.axes.map(|axis| dot(axis, offset)), self.axes.map(|axis| dot(axis.map(R::abs), half)))
     }
 
     /// A bound on the error of a projected point, per unit of weight, for points within `reach` of the frame's origin:
     /// 3 roundings of a scalar product, 1 of the difference, 1 of the weight, 5 of the axes, and the moved origin's own.
     pub(super) fn error(&self, reach: f64) -> f64 {
-        EPS * (6.0 * reach + dot(self.origin, self.origin).sqrt())
+        R::EPS * (6.0 * reach + dot(self.origin, self.origin).sqrt().to_f64()) + self.slip
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::real::DoubleDouble;
     use super::*;
 
     #[test]
@@ -124,7 +130,7 @@ mod tests {
         let frame = Frame::new([1.0 - 3.0 * t, 2.0 + t, 3.0], [3.0, -1.0, 0.0], [1.0, 2.0, 3.0]).unwrap();
         let p = frame.project([1.0, 2.0, 3.0, 1.0]);
         assert!(p[0].abs() < 1e-15 && p[1].abs() < 1e-15, "{p:?}");
-        assert!((frame.parameter(p[2]) - t).abs() <= 2.0 * EPS * t);
+        assert!((frame.parameter(p[2]) - t).abs() <= 2.0 * f64::EPS * t);
     }
 
     #[test]
@@ -136,6 +142,7 @@ mod tests {
             ([1e200, 0.0, 0.0], [1e-200, 0.0, 0.0]),
         ] {
             assert!(Frame::new(o, d, [0.0; 3]).is_none());
+            assert!(Frame::new(o, d, [DoubleDouble::ZERO; 3]).is_none());
         }
     }
 }

@@ -6,12 +6,13 @@
 //! the convex hull of the coefficients in place of an interval extension.
 
 use super::net::{Degrees, Point};
+use super::real::Real;
 
 /// What the derivative coefficients of a net say, in parameters that run from 0 to 1 over its domain.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Derivatives {
+pub(super) struct Derivatives<R> {
     /// The inverse of the mean Jacobian, row by row; meaningless if `contraction` is infinite.
-    pub(super) inverse: [[f64; 2]; 2],
+    pub(super) inverse: [[R; 2]; 2],
     /// q, rounding included: below 1, the net holds at most one root. Infinite if the mean Jacobian is singular.
     pub(super) contraction: f64,
     /// A bound on the sum of the two derivatives of the weight.
@@ -22,10 +23,10 @@ pub(super) struct Derivatives {
     pub(super) rounding: f64,
 }
 
-impl Derivatives {
+impl<R: Real> Derivatives<R> {
     /// The largest row sum of |A|.
     pub(super) fn inverse_norm(&self) -> f64 {
-        let [a, b] = self.inverse.map(|row| row[0].abs() + row[1].abs());
+        let [a, b] = self.inverse.map(|row| row[0].to_f64().abs() + row[1].to_f64().abs());
         if a > b { a } else { b }
     }
 
@@ -41,15 +42,15 @@ impl Derivatives {
     }
 }
 
-fn larger(a: f64, b: f64) -> f64 {
+fn larger<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
 /// The differences of neighbouring control points along u, then along v, times the degree: of the two plane distances
 /// and of the weight.
-fn coefficients(degrees: Degrees, net: &[Point], mut each: impl FnMut(usize, [f64; 3])) {
+fn coefficients<R: Real>(degrees: Degrees, net: &[Point<R>], mut each: impl FnMut(usize, [R; 3])) {
     let Degrees { m, n } = degrees;
-    let difference = |a: Point, b: Point, degree: usize| [0, 1, 3].map(|k| degree as f64 * (b[k] - a[k]));
+    let difference = |a: Point<R>, b: Point<R>, degree: usize| [0, 1, 3].map(|k| (b[k] - a[k]).times(degree as f64));
     for i in 0..m {
         for j in 0..=n {
             let at = i * (n + 1) + j;
@@ -66,38 +67,43 @@ fn coefficients(degrees: Degrees, net: &[Point], mut each: impl FnMut(usize, [f6
 
 /// The mean derivatives of the two homogeneous plane distances. All Bernstein polynomials of a degree have the same
 /// integral, so the mean of the coefficients is the mean over the domain; inner differences cancel.
-pub(super) fn mean_derivatives(degrees: Degrees, net: &[Point]) -> [[f64; 2]; 2] {
+pub(super) fn mean_derivatives<R: Real>(degrees: Degrees, net: &[Point<R>]) -> [[R; 2]; 2] {
     let Degrees { m, n } = degrees;
-    let mut mean = [[0.0; 2]; 2];
+    let mut mean = [[R::ZERO; 2]; 2];
     for k in 0..2 {
         for j in 0..=n {
-            mean[0][k] += (net[m * (n + 1) + j][k] - net[j][k]) / (n + 1) as f64;
+            mean[0][k] += (net[m * (n + 1) + j][k] - net[j][k]) / R::new((n + 1) as f64);
         }
         for i in 0..=m {
-            mean[1][k] += (net[i * (n + 1) + n][k] - net[i * (n + 1)][k]) / (m + 1) as f64;
+            mean[1][k] += (net[i * (n + 1) + n][k] - net[i * (n + 1)][k]) / R::new((m + 1) as f64);
         }
     }
     mean
 }
 
 /// The derivatives of `net`, whose homogeneous coefficients are exact to within `error`.
-pub(super) fn derivatives(degrees: Degrees, net: &[Point], mean: [[f64; 2]; 2], error: f64) -> Derivatives {
+pub(super) fn derivatives<R: Real>(
+    degrees: Degrees,
+    net: &[Point<R>],
+    mean: [[R; 2]; 2],
+    error: f64,
+) -> Derivatives<R> {
     let rounding = 2.0 * degrees.highest() as f64 * error;
     let [u, v] = mean;
     let determinant = u[0] * v[1] - u[1] * v[0];
     let size = (u[0].abs() + u[1].abs()) * (v[0].abs() + v[1].abs());
-    let regular = determinant.abs() > 4.0 * f64::EPSILON * size;
+    let regular = determinant.abs().to_f64() > 4.0 * R::EPS * size.to_f64();
     let inverse = [[v[1] / determinant, -v[0] / determinant], [-u[1] / determinant, u[0] / determinant]];
-    let mut largest = [[0.0; 2]; 2];
+    let mut largest = [[R::ZERO; 2]; 2];
     let mut variation = 0.0;
     let mut weight_slopes = [0.0; 2];
     coefficients(degrees, net, |column, d| {
-        weight_slopes[column] = larger(d[2].abs(), weight_slopes[column]);
+        weight_slopes[column] = larger(d[2].abs().to_f64(), weight_slopes[column]);
         for row in 0..2 {
-            let identity = if row == column { 1.0 } else { 0.0 };
+            let identity = if row == column { R::ONE } else { R::ZERO };
             let product = inverse[row][0] * d[0] + inverse[row][1] * d[1];
             largest[row][column] = larger((product - identity).abs(), largest[row][column]);
-            variation = larger((d[row] - mean[column][row]).abs(), variation);
+            variation = larger((d[row] - mean[column][row]).abs().to_f64(), variation);
         }
     });
     let mut result = Derivatives {
@@ -109,7 +115,7 @@ pub(super) fn derivatives(degrees: Degrees, net: &[Point], mean: [[f64; 2]; 2], 
     };
     if regular {
         let rows = largest.map(|row| row[0] + row[1]);
-        result.contraction = larger(rows[0], rows[1]) + 2.0 * rounding * result.inverse_norm();
+        result.contraction = larger(rows[0], rows[1]).to_f64() + 2.0 * rounding * result.inverse_norm();
     }
     result
 }
@@ -119,12 +125,12 @@ mod tests {
     use super::*;
 
     /// The plane distances (u + k u v, v) of a bilinear net.
-    fn sheared(k: f64) -> Vec<Point> {
+    fn sheared(k: f64) -> Vec<Point<f64>> {
         let point = |u: f64, v: f64| [u + k * u * v, v, 0.0, 1.0];
         vec![point(0.0, 0.0), point(0.0, 1.0), point(1.0, 0.0), point(1.0, 1.0)]
     }
 
-    fn contraction(net: &[Point]) -> f64 {
+    fn contraction(net: &[Point<f64>]) -> f64 {
         let degrees = Degrees { m: 1, n: 1 };
         derivatives(degrees, net, mean_derivatives(degrees, net), 0.0).contraction
     }

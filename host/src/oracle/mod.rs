@@ -1,7 +1,7 @@
 //! The slow truth: all roots of a ray on all surfaces of a model, and how safe the answer is.
 //!
 //! The oracle shares nothing with the methods that it judges: it reads the file's control points, and has its own
-//! evaluation, halving and proofs, in f64. Per ray and surface it projects the control points on two planes that contain
+//! evaluation, halving and proofs, in f64 or in double-double. Per ray and surface it projects the control points on two planes that contain
 //! the ray and halves the parameter domain until each part is proved to hold no root (`exclusion`), is proved to hold at
 //! most one (`injectivity`), which is then found or disproved (`contraction`), or varies by no more than rounding.
 //! A double root cannot be certified in floating point: such a part is counted as unresolved, never dropped.
@@ -12,13 +12,15 @@ mod exclusion;
 mod frame;
 mod injectivity;
 mod net;
+mod real;
 mod root;
 mod surface;
 
 use crate::scene::model::{Model, ModelSurface};
 use edges::{EDGES, Edges};
-use frame::{EPS, Frame};
+use frame::Frame;
 use net::Degrees;
+pub use real::{DoubleDouble, Real};
 use root::Found;
 use surface::{Findings, Ray, Surface};
 
@@ -61,7 +63,7 @@ pub struct Verdict {
     /// - 0, if an unresolved part may be closer than the closest root.
     ///
     /// Clearances are lower bounds by convex hulls, so an ordinary ray's margin may be some 1/1000, whatever it passes.
-    /// Below 1e-12 the answer cannot be judged in f64. A surface that meets its neighbour without sharing control points
+    /// Below 1e-12 the answer cannot be judged in f64, below 1e-28 not in double-double. A surface that meets its neighbour without sharing control points
     /// to within rounding has an outer border there.
     pub margin: f64,
     /// Domains that ended neither with a root nor excluded: tangencies, surfaces seen edge on, work beyond the bound on
@@ -69,12 +71,19 @@ pub struct Verdict {
     pub unresolved: usize,
 }
 
-/// All surfaces of a model, made ready for any number of rays; shared by threads.
+/// The oracle in f64.
+pub type Oracle = OracleIn<f64>;
+
+/// All surfaces of a model, made ready for any number of rays; shared by threads. `R` is the number that it works in.
+///
+/// In [`DoubleDouble`] it takes the same f64 exactly and judges answers down to margins of about 1e-28, for some 30 times
+/// the time. Seams whose control points differ in the last place of f64 are two outer borders to it: there the surfaces
+/// do overlap or leave a crack.
 #[derive(Clone, Debug)]
-pub struct Oracle {
-    surfaces: Vec<Surface>,
-    edges: Edges,
-    centre: [f64; 3],
+pub struct OracleIn<R> {
+    surfaces: Vec<Surface<R>>,
+    edges: Edges<R>,
+    centre: [R; 3],
     diagonal: f64,
     /// Surfaces that no ray can be judged against.
     invalid: usize,
@@ -92,6 +101,12 @@ fn bounds<'a>(points: impl Iterator<Item = &'a [f64; 4]>) -> [[f64; 3]; 2] {
     corners
 }
 
+/// The centre of a box and half its extents.
+fn middle<R: Real>([low, high]: [[f64; 3]; 2]) -> [[R; 3]; 2] {
+    let [low, high] = [low, high].map(|corner| corner.map(R::new));
+    [[0, 1, 2].map(|k| (low[k] + high[k]).half()), [0, 1, 2].map(|k| (high[k] - low[k]).half())]
+}
+
 fn is_valid(surface: &ModelSurface) -> bool {
     let degrees = 1..net::MAX_ORDER;
     degrees.contains(&surface.degree_u)
@@ -103,10 +118,10 @@ fn is_valid(surface: &ModelSurface) -> bool {
         })
 }
 
-impl Oracle {
+impl<R: Real> OracleIn<R> {
     /// Makes `model` ready. A surface with degrees outside 1 to 15, too few or too many points, a coordinate beyond
     /// ±1e100 or a weight outside 1e-100 to 1e100 is invalid: it is left out and counted in every verdict as unresolved.
-    pub fn new(model: &Model) -> Oracle {
+    pub fn new(model: &Model) -> OracleIn<R> {
         let valid: Vec<(usize, &ModelSurface)> =
             model.surfaces.iter().enumerate().filter(|(_, s)| is_valid(s)).collect();
         let all = bounds(valid.iter().flat_map(|(_, s)| &s.points));
@@ -115,24 +130,24 @@ impl Oracle {
         for (place, (number, surface)) in valid.iter().enumerate() {
             let heaviest = surface.points.iter().fold(0.0, |m, p| f64::max(m, p[3]));
             let scale = heaviest.log2().ceil().exp2();
-            let points = surface.points.iter().map(|p| [p[0], p[1], p[2], p[3] / scale]).collect();
-            let [low, high] = bounds(surface.points.iter());
+            let points = surface.points.iter().map(|p| [p[0], p[1], p[2], p[3] / scale].map(R::new)).collect();
+            let [centre, half] = middle(bounds(surface.points.iter()));
             surfaces.push(Surface {
                 number: *number,
                 first_edge: EDGES * place,
                 degrees: Degrees { m: surface.degree_u, n: surface.degree_v },
                 points,
-                centre: [0, 1, 2].map(|k| 0.5 * (low[k] + high[k])),
-                half: [0, 1, 2].map(|k| 0.5 * (high[k] - low[k])),
+                centre,
+                half,
             });
         }
         let nets = surfaces.iter().map(|s| (s.degrees, &s.points[..]));
-        let edges = Edges::new(nets, 4.0 * EPS * largest);
+        let edges = Edges::new(nets, 4.0 * R::EPS * largest);
         let [low, high] = all;
         let diagonal = [0, 1, 2].map(|k| (high[k] - low[k]).powi(2)).iter().sum::<f64>().sqrt();
-        Oracle {
+        OracleIn {
             invalid: model.surfaces.len() - surfaces.len(),
-            centre: if surfaces.is_empty() { [0.0; 3] } else { [0, 1, 2].map(|k| 0.5 * (low[k] + high[k])) },
+            centre: if surfaces.is_empty() { [R::ZERO; 3] } else { middle(all)[0] },
             // A model that is a single point has no extent to measure by.
             diagonal: if diagonal > 0.0 { diagonal } else { 1.0 },
             surfaces,
@@ -153,7 +168,7 @@ impl Oracle {
             range: [t_min, t_max].map(|t| frame.depth(t)),
             diagonal: self.diagonal,
         };
-        let mut findings = Findings::default();
+        let mut findings = Findings::new();
         for surface in &self.surfaces {
             ray.search(surface, &mut findings);
         }
@@ -161,12 +176,13 @@ impl Oracle {
     }
 
     /// The verdict on what was found.
-    fn judge(&self, frame: &Frame, mut findings: Findings, times: [f64; 2], range: [f64; 2]) -> Verdict {
-        findings.roots.sort_by(|a, b| a.depth.total_cmp(&b.depth));
-        let mut merged: Vec<Found> = Vec::new();
+    fn judge(&self, frame: &Frame<R>, mut findings: Findings<R>, times: [f64; 2], range: [R; 2]) -> Verdict {
+        let times = times.map(R::new);
+        findings.roots.sort_by(|a, b| a.depth.order(&b.depth));
+        let mut merged: Vec<Found<R>> = Vec::new();
         for root in findings.roots {
             match merged.last_mut() {
-                Some(last) if root.depth - last.depth <= last.blur + root.blur => {
+                Some(last) if root.depth.less(last.depth) <= last.blur + root.blur => {
                     if root.margin > last.margin {
                         *last = root;
                     }
@@ -190,25 +206,25 @@ impl Oracle {
             }
         }
         // How deep the answer looks: parts that begin beyond the closest root cannot change it.
-        let deepest = inside.first().map_or(range[1], |r| r.depth + r.blur);
+        let deepest = inside.first().map_or(range[1], |r| r.depth + R::new(r.blur));
         for root in &merged {
             let near = root.depth <= deepest || inside.is_empty();
             let t = frame.parameter(root.depth);
             if near && t < times[0] {
-                limit(range[0] - root.depth);
+                limit(range[0].less(root.depth));
             } else if near && t > times[1] {
-                limit(root.depth - range[1]);
+                limit(root.depth.less(range[1]));
             }
         }
         if let Some(closest) = inside.first() {
             limit(closest.margin);
-            limit(closest.depth - range[0]);
-            limit(range[1] - closest.depth);
+            limit(closest.depth.less(range[0]));
+            limit(range[1].less(closest.depth));
         }
         if let [closest, second, ..] = inside[..] {
-            let slope = |r: Found| (1.0 - r.cosine * r.cosine).sqrt() / r.cosine;
+            let slope = |r: Found<R>| (1.0 - r.cosine * r.cosine).sqrt() / r.cosine;
             let slopes = slope(closest) + slope(second);
-            limit((second.depth - closest.depth) / if slopes > 1.0 { slopes } else { 1.0 });
+            limit(second.depth.less(closest.depth) / if slopes > 1.0 { slopes } else { 1.0 });
         }
         for clearance in &findings.clearances {
             if clearance.depth <= deepest || inside.is_empty() {
@@ -220,9 +236,9 @@ impl Oracle {
         }
 
         let roots = inside.iter().map(|r| Root {
-            t: frame.parameter(r.depth),
-            u: r.uv[0],
-            v: r.uv[1],
+            t: frame.parameter(r.depth).to_f64(),
+            u: r.uv[0].to_f64(),
+            v: r.uv[1].to_f64(),
             surface: r.surface,
             margin: r.margin / self.diagonal,
             blur: r.blur / self.diagonal,

@@ -3,8 +3,10 @@
 //! A net of degrees `(m, n)` is a slice of `(m + 1)(n + 1)` homogeneous points `[w a, w b, w c, w]`, u being the outer
 //! index. Source: G. Farin, *Curves and Surfaces for CAGD*, 5th edition, sections 4.2, 14.2 and 15.4.
 
+use super::real::Real;
+
 /// A homogeneous point or vector: three coordinates, already multiplied by the weight, and the weight.
-pub(super) type Point = [f64; 4];
+pub(super) type Point<R> = [R; 4];
 
 /// One more than the highest degree of a surface.
 pub(super) const MAX_ORDER: usize = 16;
@@ -41,12 +43,18 @@ pub(super) enum Axis {
 
 /// Halves `net` across `axis` at the middle of its domain: `low` and `high` become the nets of the two halves. All three
 /// slices hold `degrees.points()` points.
-pub(super) fn halve(degrees: Degrees, net: &[Point], axis: Axis, low: &mut [Point], high: &mut [Point]) {
+pub(super) fn halve<R: Real>(
+    degrees: Degrees,
+    net: &[Point<R>],
+    axis: Axis,
+    low: &mut [Point<R>],
+    high: &mut [Point<R>],
+) {
     let (lines, step, degree, stride) = match axis {
         Axis::U => (degrees.n + 1, 1, degrees.m, degrees.n + 1),
         Axis::V => (degrees.m + 1, degrees.n + 1, degrees.n, 1),
     };
-    let mut c = [[0.0; 4]; MAX_ORDER];
+    let mut c = [[R::ZERO; 4]; MAX_ORDER];
     for line in 0..lines {
         let start = line * step;
         for k in 0..=degree {
@@ -57,7 +65,7 @@ pub(super) fn halve(degrees: Degrees, net: &[Point], axis: Axis, low: &mut [Poin
         for r in 1..=degree {
             for k in 0..=degree - r {
                 for x in 0..4 {
-                    c[k][x] = 0.5 * (c[k][x] + c[k + 1][x]);
+                    c[k][x] = (c[k][x] + c[k + 1][x]).half();
                 }
             }
             low[start + r * stride] = c[0];
@@ -67,23 +75,23 @@ pub(super) fn halve(degrees: Degrees, net: &[Point], axis: Axis, low: &mut [Poin
 }
 
 /// A homogeneous curve's point and first two derivatives at `t`, from `degree + 1` control points, which are used up.
-pub(super) fn curve_jet(degree: usize, c: &mut [Point; MAX_ORDER], t: f64) -> [Point; 3] {
-    let s = 1.0 - t;
-    let lerp = |a: Point, b: Point| {
-        let mut p = [0.0; 4];
+pub(super) fn curve_jet<R: Real>(degree: usize, c: &mut [Point<R>; MAX_ORDER], t: R) -> [Point<R>; 3] {
+    let s = R::ONE - t;
+    let lerp = |a: Point<R>, b: Point<R>| {
+        let mut p = [R::ZERO; 4];
         for x in 0..4 {
             p[x] = s * a[x] + t * b[x];
         }
         p
     };
-    let mut second = [0.0; 4];
+    let mut second = [R::ZERO; 4];
     let mut count = degree + 1;
     // Ends at the two points whose difference is the tangent.
     while count > 2 {
         if count == 3 {
             let scale = (degree * (degree - 1)) as f64;
             for x in 0..4 {
-                second[x] = scale * ((c[2][x] - c[1][x]) - (c[1][x] - c[0][x]));
+                second[x] = ((c[2][x] - c[1][x]) - (c[1][x] - c[0][x])).times(scale);
             }
         }
         for k in 0..count - 1 {
@@ -91,27 +99,27 @@ pub(super) fn curve_jet(degree: usize, c: &mut [Point; MAX_ORDER], t: f64) -> [P
         }
         count -= 1;
     }
-    let mut first = [0.0; 4];
+    let mut first = [R::ZERO; 4];
     for x in 0..4 {
-        first[x] = degree as f64 * (c[1][x] - c[0][x]);
+        first[x] = (c[1][x] - c[0][x]).times(degree as f64);
     }
     [lerp(c[0], c[1]), first, second]
 }
 
 /// A homogeneous surface point with its derivatives up to the second.
-pub(super) struct Jet {
+pub(super) struct Jet<R> {
     /// The point.
-    pub(super) point: Point,
+    pub(super) point: Point<R>,
     /// First derivatives, by u and by v.
-    pub(super) first: [Point; 2],
+    pub(super) first: [Point<R>; 2],
     /// Second derivatives: uu, uv, vv.
-    pub(super) second: [Point; 3],
+    pub(super) second: [Point<R>; 3],
 }
 
 /// Evaluates `net` at `(u, v)`.
-pub(super) fn surface_jet(degrees: Degrees, net: &[Point], u: f64, v: f64) -> Jet {
-    let mut columns = [[[0.0; 4]; MAX_ORDER]; 3];
-    let mut row = [[0.0; 4]; MAX_ORDER];
+pub(super) fn surface_jet<R: Real>(degrees: Degrees, net: &[Point<R>], u: R, v: R) -> Jet<R> {
+    let mut columns = [[[R::ZERO; 4]; MAX_ORDER]; 3];
+    let mut row = [[R::ZERO; 4]; MAX_ORDER];
     for i in 0..=degrees.m {
         let start = i * (degrees.n + 1);
         row[..=degrees.n].copy_from_slice(&net[start..=start + degrees.n]);
@@ -131,7 +139,7 @@ mod tests {
     use super::*;
 
     /// z = u³ − 2 u v², x = u, y = v, with a weight of 1 + u + v throughout.
-    fn cubic() -> (Degrees, Vec<Point>) {
+    fn cubic() -> (Degrees, Vec<Point<f64>>) {
         let degrees = Degrees { m: 4, n: 3 };
         // Bernstein coefficients of the powers of a parameter, by degree.
         let power = |d: usize, k: usize, i: usize| {

@@ -6,14 +6,15 @@
 use super::contraction::Domain;
 use super::edges::EDGES;
 use super::net::{Degrees, Point, surface_jet};
+use super::real::Real;
 use super::surface::{Ray, Surface, norm};
 
 /// A root of one surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
+pub(super) struct Found<R> {
     pub(super) surface: usize,
-    pub(super) uv: [f64; 2],
-    pub(super) depth: f64,
+    pub(super) uv: [R; 2],
+    pub(super) depth: R,
     /// How far `depth` may be off by rounding.
     pub(super) blur: f64,
     /// The cosine of the angle between ray and normal; 0 if there is no normal.
@@ -22,21 +23,26 @@ pub(super) struct Found {
     pub(super) margin: f64,
 }
 
-impl Ray<'_> {
+impl<R: Real> Ray<'_, R> {
     /// The root at `uv`, with its margin; `error` bounds the error of an evaluation, per unit of weight.
-    pub(super) fn measure(&self, surface: &Surface, net: &[Point], uv: [f64; 2], error: f64) -> Found {
+    pub(super) fn measure(&self, surface: &Surface<R>, net: &[Point<R>], uv: [R; 2], error: f64) -> Found<R> {
         let jet = surface_jet(surface.degrees, net, uv[0], uv[1]);
         let w = jet.point[3];
-        let point = [0, 1, 2].map(|k| jet.point[k] / w);
+        let [x, y, z, _] = jet.point;
+        let point = R::over([x, y, z], w);
         // The quotient rule, for the first derivatives and then for the second.
-        let first = jet.first.map(|d| [0, 1, 2].map(|k| (d[k] - d[3] * point[k]) / w));
+        let first = jet.first.map(|d| R::over([0, 1, 2].map(|k| d[k] - d[3] * point[k]), w));
         let second = [(0, 0), (0, 1), (1, 1)].map(|(a, b)| {
             let d = jet.second[a + b];
-            [0, 1, 2]
-                .map(|k| (d[k] - d[3] * point[k] - jet.first[a][3] * first[b][k] - jet.first[b][3] * first[a][k]) / w)
+            let [wa, wb] = [jet.first[a][3], jet.first[b][3]];
+            let scaled = |k: usize| d[k] - d[3] * point[k] - wa * first[b][k] - wb * first[a][k];
+            R::over([0, 1, 2].map(scaled), w).map(R::to_f64)
         });
         let [a, b] = first;
         let normal = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        // Of the angles and curvatures made of these, rounding takes no more digits than it takes of them.
+        let normal = normal.map(R::to_f64);
+        let [a, b] = first.map(|d| d.map(R::to_f64));
         let area = norm(normal);
         let cosine = if area > 0.0 { normal[2].abs() / area } else { 0.0 };
 
@@ -66,8 +72,8 @@ impl Ray<'_> {
         // The borders, by the parallelogram of the first derivatives as the ray sees it.
         for edge in 0..EDGES {
             let (across, along) = (edge / 2, 1 - edge / 2);
-            let rim = first[along];
-            let run = (uv[across] - (edge % 2) as f64).abs();
+            let rim = [a, b][along];
+            let run = (uv[across] - R::new((edge % 2) as f64)).abs().to_f64();
             let distance = run * normal[2].abs() / (rim[0] * rim[0] + rim[1] * rim[1]).sqrt();
             if distance < margin && !self.edges.continues(surface.first_edge + edge, uv[along], self.frame.direction())
             {
@@ -76,22 +82,27 @@ impl Ray<'_> {
         }
         Found {
             surface: surface.number,
-            uv: uv.map(|x| x.clamp(0.0, 1.0)),
+            uv: uv.map(R::clamp_unit),
             depth: point[2],
-            blur: 4.0 * error / f64::max(cosine, 1e-8),
+            blur: 4.0 * error / f64::max(cosine, least_cosine::<R>()),
             cosine,
             margin,
         }
     }
 }
 
+/// The cosine below which a root is a double one as far as rounding can tell: of the size of a square root of `EPS`.
+fn least_cosine<R: Real>() -> f64 {
+    1e-8 * (R::EPS / f64::EPSILON).sqrt()
+}
+
 /// The parameters of the corner, the middle of a side, or the centre of `domain` that is nearest to the ray. A collapsed
 /// edge that the ray meets is one of the sides.
-pub(super) fn nearest_point(degrees: Degrees, net: &[Point], domain: Domain) -> [f64; 2] {
-    let mut best = (f64::INFINITY, [0.0; 2]);
+pub(super) fn nearest_point<R: Real>(degrees: Degrees, net: &[Point<R>], domain: Domain<R>) -> [R; 2] {
+    let mut best = (f64::INFINITY, [R::ZERO; 2]);
     for k in 0..9 {
-        let uv = domain.at([0.5 * (k / 3) as f64, 0.5 * (k % 3) as f64]);
-        let p = surface_jet(degrees, net, uv[0], uv[1]).point;
+        let uv = domain.at([k / 3, k % 3].map(|x| R::new(0.5 * x as f64)));
+        let p = surface_jet(degrees, net, uv[0], uv[1]).point.map(R::to_f64);
         let distance = p[0].hypot(p[1]) / p[3];
         if distance < best.0 {
             best = (distance, uv);

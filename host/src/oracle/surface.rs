@@ -3,17 +3,20 @@
 use super::contraction::{Content, Domain, content};
 use super::edges::{EDGES, Edges};
 use super::exclusion::widest_gap;
-use super::frame::{EPS, Frame};
+use super::frame::Frame;
 use super::injectivity::{derivatives, mean_derivatives};
 use super::net::{Axis, Degrees, Point, halve};
+use super::real::Real;
 use super::root::{Found, nearest_point};
 
 /// Domains examined per ray and surface. The teapot takes at most 111, a degree 15 surface met 15 times 179, a pole met
 /// head on or a tangent within 1e-15 up to 2,000; more only lengthens the work for rays that lie along a surface.
 const MAX_DOMAINS: usize = 20_000;
 
-/// Least extent of a domain in u or v, 2⁻⁵⁰: below it the parameters have no digits left.
-const MIN_SIZE: f64 = 1.0 / (1u64 << 50) as f64;
+/// Least extent of a domain in u or v, 2⁻⁵⁰ in f64: below it the parameters have no digits left.
+const fn min_size<R: Real>() -> f64 {
+    4.0 * R::EPS
+}
 
 /// Largest q at which a domain is given to the root finder. Below 1 is enough for at most one root; 1/2 makes the
 /// iteration gain a bit per step, at the cost of about one more halving.
@@ -37,7 +40,7 @@ const AMPLE_PART: f64 = 1.0 / 1024.0;
 
 /// A surface with what is the same for all rays.
 #[derive(Clone, Debug)]
-pub(super) struct Surface {
+pub(super) struct Surface<R> {
     /// Its number in the model.
     pub(super) number: usize,
     /// The number of its first edge.
@@ -45,34 +48,39 @@ pub(super) struct Surface {
     /// Its degrees.
     pub(super) degrees: Degrees,
     /// Its control points `[x, y, z, w]`, the weights scaled by a power of two to at most 1.
-    pub(super) points: Vec<Point>,
+    pub(super) points: Vec<Point<R>>,
     /// The centre of their bounding box.
-    pub(super) centre: [f64; 3],
+    pub(super) centre: [R; 3],
     /// Half the extents of that box.
-    pub(super) half: [f64; 3],
+    pub(super) half: [R; 3],
 }
 
 /// A part of a surface that the ray passes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clearance {
+pub(super) struct Clearance<R> {
     /// How far the ray must move at least before it meets that part.
     pub(super) gap: f64,
     /// The least depth of that part.
-    pub(super) depth: f64,
+    pub(super) depth: R,
 }
 
 /// What one ray finds on all surfaces.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Findings {
-    pub(super) roots: Vec<Found>,
-    pub(super) clearances: Vec<Clearance>,
+#[derive(Clone, Debug)]
+pub(super) struct Findings<R> {
+    pub(super) roots: Vec<Found<R>>,
+    pub(super) clearances: Vec<Clearance<R>>,
     /// Least depths of the domains that could not be decided.
-    pub(super) unresolved: Vec<f64>,
+    pub(super) unresolved: Vec<R>,
 }
 
-impl Findings {
+impl<R: Real> Findings<R> {
+    /// Nothing yet.
+    pub(super) fn new() -> Findings<R> {
+        Findings { roots: Vec::new(), clearances: Vec::new(), unresolved: Vec::new() }
+    }
+
     /// Notes a part that begins at `depth` and that the ray must move by `gap` to meet otherwise than it does.
-    fn clear(&mut self, gap: f64, depth: f64) {
+    fn clear(&mut self, gap: f64, depth: R) {
         if gap.is_finite() {
             self.clearances.push(Clearance { gap, depth });
         }
@@ -80,19 +88,19 @@ impl Findings {
 }
 
 /// A ray and what it is traced through.
-pub(super) struct Ray<'a> {
-    pub(super) frame: &'a Frame,
-    pub(super) edges: &'a Edges,
+pub(super) struct Ray<'a, R> {
+    pub(super) frame: &'a Frame<R>,
+    pub(super) edges: &'a Edges<R>,
     /// The depths between which roots are wanted.
-    pub(super) range: [f64; 2],
+    pub(super) range: [R; 2],
     /// The model's diagonal.
     pub(super) diagonal: f64,
 }
 
 /// A domain that waits on the stack; its net is at the same place of the stack of nets.
 #[derive(Clone, Copy)]
-struct Pending {
-    domain: Domain,
+struct Pending<R> {
+    domain: Domain<R>,
     /// The error bound of its net, per unit of weight.
     error: f64,
 }
@@ -101,9 +109,9 @@ pub(super) fn norm(a: [f64; 3]) -> f64 {
     (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt()
 }
 
-impl Ray<'_> {
+impl<R: Real> Ray<'_, R> {
     /// The clearance of a box, or `None` if the ray may pass through it.
-    fn passes(&self, centre: [f64; 3], half: [f64; 3], error: f64) -> Option<Clearance> {
+    fn passes(&self, centre: [R; 3], half: [R; 3], error: f64) -> Option<Clearance<R>> {
         let mut best: Option<f64> = None;
         let mut consider = |gap: f64, extent: f64| {
             if gap > 8.0 * error && gap >= CLEAR_PART * extent && best.is_none_or(|b| gap > b) {
@@ -111,30 +119,31 @@ impl Ray<'_> {
             }
         };
         for k in 0..2 {
-            consider(centre[k].abs() - half[k], 2.0 * half[k]);
+            consider(centre[k].abs().less(half[k]), 2.0 * half[k].to_f64());
         }
-        consider(self.range[0] - (centre[2] + half[2]), 2.0 * half[2]);
-        consider((centre[2] - half[2]) - self.range[1], 2.0 * half[2]);
-        best.map(|gap| Clearance { gap, depth: centre[2] - half[2] })
+        let [near, far] = [centre[2] - half[2], centre[2] + half[2]];
+        consider(self.range[0].less(far), 2.0 * half[2].to_f64());
+        consider(near.less(self.range[1]), 2.0 * half[2].to_f64());
+        best.map(|gap| Clearance { gap, depth: near })
     }
 
     /// Whether the surface carries on across all of its edges that `domain` touches, as far as their ends and middle tell.
-    fn continues(&self, surface: &Surface, domain: Domain) -> bool {
+    fn continues(&self, surface: &Surface<R>, domain: Domain<R>) -> bool {
         (0..EDGES).all(|edge| {
             let (across, along) = (edge / 2, 1 - edge / 2);
-            let border = domain.corner[across] + (edge % 2) as f64 * domain.size[across];
-            border != (edge % 2) as f64
+            let border = domain.corner[across] + R::new((edge % 2) as f64 * domain.size[across]);
+            border != R::new((edge % 2) as f64)
                 || [0.0, 0.5, 1.0].iter().all(|x| {
-                    let s = domain.corner[along] + x * domain.size[along];
+                    let s = domain.corner[along] + R::new(x * domain.size[along]);
                     self.edges.continues(surface.first_edge + edge, s, self.frame.direction())
                 })
         })
     }
 
     /// Adds what this ray finds on `surface` to `findings`.
-    pub(super) fn search(&self, surface: &Surface, findings: &mut Findings) {
+    pub(super) fn search(&self, surface: &Surface<R>, findings: &mut Findings<R>) {
         let (centre, half) = self.frame.project_box(surface.centre, surface.half);
-        let reach = norm(centre) + norm(half);
+        let reach = norm(centre.map(R::to_f64)) + norm(half.map(R::to_f64));
         let error = self.frame.error(reach);
         if let Some(clearance) = self.passes(centre, half, error) {
             findings.clearances.push(clearance);
@@ -142,15 +151,15 @@ impl Ray<'_> {
         }
         let degrees = surface.degrees;
         let count = degrees.points();
-        let net: Vec<Point> = surface.points.iter().map(|&p| self.frame.project(p)).collect();
+        let net: Vec<Point<R>> = surface.points.iter().map(|&p| self.frame.project(p)).collect();
         // Each of the m + n stages of an evaluation rounds twice, and its parameters once.
-        let evaluation = error + 3.0 * (degrees.m + degrees.n) as f64 * EPS * reach;
+        let evaluation = error + 3.0 * (degrees.m + degrees.n) as f64 * R::EPS * reach;
         let ample = AMPLE_PART * self.diagonal;
 
-        let mut stack = vec![Pending { domain: Domain { corner: [0.0; 2], size: [1.0; 2] }, error }];
+        let mut stack = vec![Pending { domain: Domain::whole(), error }];
         let mut nets = net.clone();
-        let mut current = vec![[0.0; 4]; count];
-        let mut distances = vec![[0.0; 2]; count];
+        let mut current = vec![[R::ZERO; 4]; count];
+        let mut places = vec![[R::ZERO; 3]; count];
         let mut examined = 0;
         // Ends when no domain is pending, or with all pending ones unresolved after `MAX_DOMAINS`.
         while let Some(Pending { domain, error }) = stack.pop() {
@@ -158,23 +167,23 @@ impl Ray<'_> {
             nets.truncate(stack.len() * count);
             let mut weight = 0.0;
             let mut farthest = 0.0;
-            let mut depths = [f64::INFINITY, f64::NEG_INFINITY];
-            for (distance, p) in distances.iter_mut().zip(&current) {
-                *distance = [p[0] / p[3], p[1] / p[3]];
-                for d in distance {
-                    farthest = f64::max(farthest, d.abs());
+            let mut depths = [R::INFINITY, -R::INFINITY];
+            for (place, &[x, y, z, w]) in places.iter_mut().zip(&current) {
+                *place = R::over([x, y, z], w);
+                for d in &place[..2] {
+                    farthest = f64::max(farthest, d.abs().to_f64());
                 }
-                weight = f64::max(weight, p[3]);
-                depths = [f64::min(depths[0], p[2] / p[3]), f64::max(depths[1], p[2] / p[3])];
+                weight = f64::max(weight, w.to_f64());
+                depths = [depths[0].smaller(place[2]), depths[1].larger(place[2])];
             }
             if examined == MAX_DOMAINS {
                 findings.unresolved.push(depths[0]);
                 continue;
             }
             examined += 1;
-            let axis = split_axis(degrees, &current, domain);
+            let axis = split_axis(degrees, &places, domain);
             let mean = mean_derivatives(degrees, &current);
-            let gap = widest_gap(&distances, mean, ample);
+            let gap = widest_gap(&places, mean, ample);
             if gap.width > 3.0 * error {
                 if gap.width >= ample {
                     findings.clear(gap.width, depths[0]);
@@ -191,7 +200,7 @@ impl Ray<'_> {
                     continue;
                 }
             } else {
-                let beyond = f64::max(self.range[0] - depths[1], depths[0] - self.range[1]);
+                let beyond = f64::max(self.range[0].less(depths[1]), depths[0].less(self.range[1]));
                 if beyond > 3.0 * error {
                     findings.clear(beyond, depths[0]);
                     continue;
@@ -219,7 +228,7 @@ impl Ray<'_> {
                     if farthest <= point {
                         let uv = nearest_point(degrees, &net, domain);
                         let mut root = self.measure(surface, &net, uv, evaluation);
-                        root.blur = f64::max(root.blur, depths[1] - depths[0]);
+                        root.blur = f64::max(root.blur, depths[1].less(depths[0]));
                         root.margin = 0.0;
                         findings.roots.push(root);
                     } else {
@@ -231,16 +240,16 @@ impl Ray<'_> {
             if let Some(axis) = axis {
                 // Each stage of the halving rounds once.
                 let degree = if axis == Axis::U { degrees.m } else { degrees.n };
-                let error = error + degree as f64 * EPS * farthest;
+                let error = error + degree as f64 * R::EPS * farthest;
                 let place = nets.len();
-                nets.resize(place + 2 * count, [0.0; 4]);
+                nets.resize(place + 2 * count, [R::ZERO; 4]);
                 let (low, high) = nets[place..].split_at_mut(count);
                 halve(degrees, &current, axis, low, high);
                 for side in 0..2 {
                     let k = if axis == Axis::U { 0 } else { 1 };
                     let mut half = domain;
                     half.size[k] *= 0.5;
-                    half.corner[k] += side as f64 * half.size[k];
+                    half.corner[k] += R::new(side as f64 * half.size[k]);
                     stack.push(Pending { domain: half, error });
                 }
             }
@@ -249,10 +258,10 @@ impl Ray<'_> {
 }
 
 /// The direction in which to halve: the one along which the net is longer in space, unless its domain is too short for
-/// another halving; `None` if both are.
-fn split_axis(degrees: Degrees, net: &[Point], domain: Domain) -> Option<Axis> {
+/// another halving; `None` if both are. `net` is not homogeneous.
+fn split_axis<R: Real>(degrees: Degrees, net: &[[R; 3]], domain: Domain<R>) -> Option<Axis> {
     let Degrees { m, n } = degrees;
-    let length = |a: Point, b: Point| norm([0, 1, 2].map(|k| b[k] / b[3] - a[k] / a[3]));
+    let length = |a: [R; 3], b: [R; 3]| norm([0, 1, 2].map(|k| (b[k] - a[k]).to_f64()));
     let [mut along_u, mut along_v] = [0.0; 2];
     for j in 0..=n {
         let mut sum = 0.0;
@@ -268,7 +277,7 @@ fn split_axis(degrees: Degrees, net: &[Point], domain: Domain) -> Option<Axis> {
         }
         along_v = f64::max(along_v, sum);
     }
-    let [u_left, v_left] = domain.size.map(|s| s > MIN_SIZE);
+    let [u_left, v_left] = domain.size.map(|s| s > min_size::<R>());
     match (u_left, v_left) {
         (true, true) if along_u >= along_v => Some(Axis::U),
         (true, false) => Some(Axis::U),
