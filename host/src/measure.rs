@@ -5,7 +5,7 @@ use crate::lower::{LowerError, Stages};
 use crate::prepared::Prepared;
 use crate::report::tables::{RaysKind, RaysRun, Run, SamplingRun};
 use crate::report::times::Times;
-use crate::scanline::{Lane, Outcome, Tally, Tracer, rays_of, row};
+use crate::scanline::{Each, Lane, Outcome, Tally, Tracer, rays_of, row};
 use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
 use crate::scene::model::Model;
@@ -103,9 +103,9 @@ fn in_turn<T>(scene: &Scene, repetitions: u32, subjects: &mut [T], mut pass: imp
 }
 
 /// How many points are more than the roots that there are on their ray.
-pub(crate) fn found_twice(points: &[u32], truths: &[Truth]) -> u64 {
-    let excess = |(&points, truth): (&u32, &Truth)| u64::from(points).saturating_sub(truth.roots as u64);
-    points.iter().zip(truths).filter(|(_, truth)| !truth.open).map(excess).sum()
+pub(crate) fn found_twice(each: &[Each], truths: &[Truth]) -> u64 {
+    let excess = |(each, truth): (&Each, &Truth)| u64::from(each.points).saturating_sub(truth.roots as u64);
+    each.iter().zip(truths).filter(|(_, truth)| !truth.open).map(excess).sum()
 }
 
 impl Scene<'_> {
@@ -134,13 +134,13 @@ impl Scene<'_> {
         let mut by_clipping = Vec::new();
         let mut judged = Vec::new();
         for (lane, (method, _)) in lanes.iter_mut().zip(subjects) {
-            let mut tally = Tally { points: Some(Vec::new()), ..Tally::default() };
+            let mut tally = Tally { each: Some(Vec::new()), ..Tally::default() };
             let mut outcomes = Vec::new();
             trace_picture(lane.as_mut(), &self.picture, &mut tally, |line| outcomes.extend_from_slice(line));
             let agreement =
                 truths.map(|truths| Agreement::of(&outcomes, truths, &self.picture, diagonal, self.settings.precision));
-            let points = tally.points.take().unwrap_or_default();
-            judged.push((tally, agreement, truths.map(|truths| found_twice(&points, truths))));
+            let each = tally.each.take().unwrap_or_default();
+            judged.push((tally, agreement, truths.map(|truths| found_twice(&each, truths))));
             if *method == Method::Clipping {
                 by_clipping = outcomes;
             }
@@ -341,6 +341,7 @@ mod tests {
     fn points_beyond_the_roots_were_found_twice() {
         let truth = |roots, open| Truth { closest: Some(1.0), roots, open, margin: 1.0 };
         let truths = [truth(2, false), truth(2, false), truth(0, true)];
-        assert_eq!(found_twice(&[1, 5, 7], &truths), 3);
+        let each = [1, 5, 7].map(|points| Each { points, steps: 9 });
+        assert_eq!(found_twice(&each, &truths), 3);
     }
 }

@@ -77,8 +77,29 @@ pub struct Tally {
     /// Seconds for making rays and answering them, summed over threads. Measured around whole lines; the
     /// conversion of numbers and the normals are outside.
     pub seconds: f64,
-    /// The intersection points of each ray, in order: only if there is a list for them when rays are traced.
-    pub points: Option<Vec<u32>>,
+    /// What each ray took, in order: only if there is a list for it when rays are traced.
+    pub each: Option<Vec<Each>>,
+}
+
+/// What one ray took, by the kernel's counters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Each {
+    /// Its intersection points.
+    pub points: u32,
+    /// Its Newton steps and clips together.
+    pub steps: u32,
+}
+
+impl Each {
+    /// What counters that began at 0 have come to.
+    fn of(work: &Work) -> Self {
+        Each { points: work.intersection_points, steps: work.newton_steps.saturating_add(work.clip_steps) }
+    }
+
+    /// What was added since they had come to `before`.
+    fn since(self, before: Each) -> Self {
+        Each { points: self.points.saturating_sub(before.points), steps: self.steps.saturating_sub(before.steps) }
+    }
 }
 
 impl Tally {
@@ -94,8 +115,8 @@ impl Tally {
             *sum += part;
         }
         self.seconds += other.seconds;
-        if let (Some(points), Some(others)) = (&mut self.points, &other.points) {
-            points.extend(others);
+        if let (Some(each), Some(others)) = (&mut self.each, &other.each) {
+            each.extend(others);
         }
     }
 
@@ -252,14 +273,14 @@ struct MethodLane<'t, M: Method<P>, P: Point> {
 /// kernel's last stores.
 struct Counting<'s> {
     sums: &'s mut [u64; Work::COUNT],
-    points: Option<&'s mut Vec<u32>>,
+    each: Option<&'s mut Vec<Each>>,
     works: [Work; 2],
     rays: usize,
 }
 
 impl<'s> Counting<'s> {
     fn new(tally: &'s mut Tally) -> Self {
-        Counting { sums: &mut tally.work, points: tally.points.as_mut(), works: [Work::default(); 2], rays: 0 }
+        Counting { sums: &mut tally.work, each: tally.each.as_mut(), works: [Work::default(); 2], rays: 0 }
     }
 
     /// The counters of the next ray.
@@ -267,7 +288,7 @@ impl<'s> Counting<'s> {
     fn next(&mut self) -> &mut Work {
         let work = &mut self.works[self.rays & 1];
         if self.rays >= 2 {
-            add(self.sums, &mut self.points, work);
+            add(self.sums, &mut self.each, work);
         }
         self.rays += 1;
         *work = Work::default();
@@ -277,18 +298,18 @@ impl<'s> Counting<'s> {
     /// Sums what is left.
     fn end(mut self) {
         for ray in self.rays.saturating_sub(2)..self.rays {
-            add(self.sums, &mut self.points, &self.works[ray & 1]);
+            add(self.sums, &mut self.each, &self.works[ray & 1]);
         }
     }
 }
 
 #[inline(always)]
-fn add(sums: &mut [u64; Work::COUNT], points: &mut Option<&mut Vec<u32>>, work: &Work) {
+fn add(sums: &mut [u64; Work::COUNT], each: &mut Option<&mut Vec<Each>>, work: &Work) {
     for (sum, count) in sums.iter_mut().zip(work.counts()) {
         *sum += u64::from(count);
     }
-    if let Some(points) = points {
-        points.push(work.intersection_points);
+    if let Some(each) = each {
+        each.push(Each::of(work));
     }
 }
 

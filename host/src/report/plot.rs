@@ -78,7 +78,7 @@ pub fn escaped(text: &str) -> String {
 }
 
 /// A whole power of ten, such as 10⁻¹².
-fn power(exponent: i32) -> String {
+pub fn power(exponent: i32) -> String {
     let digits = exponent.to_string();
     let raised = digits.chars().map(|c| match c {
         '-' => '⁻',

@@ -13,7 +13,7 @@ use patchray::scalar::Scalar;
 use patchray::scene::Scene;
 use patchray::view::View;
 
-use super::{BLOCK, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};
+use super::{BLOCK, Each, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};
 use crate::lower::ORDER;
 use crate::method::in_view::ViewMethod;
 use crate::scene::camera;
@@ -187,17 +187,17 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
             let begin = Instant::now();
             // Of a view the kernel goes on counting from ray to ray.
             let mut work = Work::default();
-            let mut points = tally.points.as_mut();
+            let mut each = tally.each.as_mut();
             if let Some(line) = &mut of_line {
                 found.extend(ready.iter().map(|&place| {
                     number += step;
-                    let before = work.intersection_points;
+                    let before = each.is_some().then(|| Each::of(&work));
                     let answer = view.ray(place, &ahead).map(|ray| {
                         let answer = M::closest(view, line, &mut memory, number, &ray, limits, scratch, &mut work);
                         answer.map_err(Into::into)
                     });
-                    if let Some(points) = &mut points {
-                        points.push(work.intersection_points - before);
+                    if let (Some(each), Some(before)) = (&mut each, before) {
+                        each.push(Each::of(&work).since(before));
                     }
                     Some(answer)
                 }));

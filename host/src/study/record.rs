@@ -130,18 +130,21 @@ pub struct Worst {
     pub command: String,
 }
 
-/// What became of each pixel: a character each, row by row from the top left; see [`pixel`](super::run::pixel).
+/// What became of each pixel, and what it took: a character each, row by row from the top left.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Map {
     /// Width and height.
     pub size: [u32; 2],
-    /// The characters.
+    /// What became of them; see [`pixel`](super::run::pixel).
     pub pixels: String,
 }
 
 /// A line of a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "line", rename_all = "kebab-case")]
+    /// The steps that they took; see [`effort`](super::run::effort). Empty in a record that does not say.
+    #[serde(default)]
+    pub steps: String,
 pub enum Line {
     /// What was measured.
     Cell(Head),
@@ -280,7 +283,7 @@ pub(crate) mod tests {
                 limit: None,
                 command: format!("patchray study --only {} --pixel 1,2", cell.id()),
             }],
-            map: Map { size: [2, 1], pixels: ".a".to_owned() },
+            map: Map { size: [2, 1], pixels: ".a".to_owned(), steps: ".c".to_owned() },
         };
         Record {
             head: Head {

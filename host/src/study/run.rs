@@ -65,6 +65,16 @@ pub fn pixel(judged: &Judged) -> char {
     }
 }
 
+/// The character of [`Map::steps`] for a ray of so many steps: `.` for none; else a letter from `a` to `z`, `a` being one
+/// step and every second letter on twice as many.
+pub fn effort(steps: u32) -> char {
+    if steps == 0 {
+        return '.';
+    }
+    let half_octaves = 2.0 * f64::from(steps).log2();
+    char::from(b'a' + half_octaves.clamp(0.0, 25.0) as u8)
+}
+
 /// How many bad answers a record names.
 const WORST: usize = 10;
 
@@ -147,11 +157,12 @@ impl Study<'_> {
     fn judge(&self, cell: &Cell, lane: &mut dyn Lane) -> Answers {
         let Subject { picture, model, .. } = self.subject;
         let judge = Judge { model, diagonal: self.subject.diagonal(), allowance: allowance(cell.precision) };
-        let mut tally = Tally { points: Some(Vec::new()), ..Tally::default() };
+        let mut tally = Tally { each: Some(Vec::new()), ..Tally::default() };
         let mut outcomes = Vec::new();
         trace_picture(lane, picture, &mut tally, |line| outcomes.extend_from_slice(line));
         let truths: Vec<Truth> = self.truths.iter().map(|ray| ray.truth).collect();
-        let doubled = found_twice(tally.points.as_deref().unwrap_or_default(), &truths);
+        let each = tally.each.take().unwrap_or_default();
+        let doubled = found_twice(&each, &truths);
         let rays = (0..picture.scan_lines()).flat_map(|line| row(picture, line));
         let (mut errors, mut residuals, mut pixels) = (Vec::new(), Vec::new(), String::new());
         let (mut counts, mut bad) = (Counts { doubled, ..Counts::default() }, Vec::new());
@@ -205,7 +216,7 @@ impl Study<'_> {
             }
         });
         let (worst, t, residual) = (worst.collect(), Spread::of(&errors), Spread::of(&residuals));
-        let map = Map { size: picture.size, pixels };
+        let map = Map { size: picture.size, pixels, steps: each.iter().map(|each| effort(each.steps)).collect() };
         Answers { tally, counts, errors: Errors { t, residual }, worst, map }
     }
 }
@@ -250,6 +261,11 @@ mod tests {
     use crate::study::plan::{Knob, plan};
     use crate::study::truth::of_picture;
 
+    /// The fewest steps that a letter stands for.
+    fn steps_of(letter: char) -> f64 {
+        if letter == '.' { 0.0 } else { 2_f64.powf(f64::from(letter as u32 - 'a' as u32) / 2.0) }
+    }
+
     #[test]
     fn what_is_counted_is_what_the_judge_of_other_verbs_counts() {
         let scene = common_scene().expect("the fixture is valid");
@@ -293,6 +309,11 @@ mod tests {
             );
             assert_eq!((time.repetitions.len(), time.pace.len(), worst.len()), (2, 2, 10));
             assert_eq!(map.pixels.chars().filter(|c| c.is_lowercase()).count() as u64, errors.t.count);
+            assert_eq!(map.steps.len(), map.pixels.len());
+            // Half an octave says a ray's steps to a factor of √2, so that their sum cannot be farther off.
+            let least: f64 = map.steps.chars().map(steps_of).sum();
+            let steps = counts.work["newton_steps"] + counts.work["clip_steps"];
+            assert!((least..1.42 * least).contains(&(steps as f64)), "{}: {steps} and {least}", cell.id());
             losses.push((counts.lost(), errors.t.max, counts.gave_up.clone()));
         }
         assert!(losses[0].1 < 1e-12 && losses[0].2.is_empty());
@@ -314,5 +335,10 @@ mod tests {
         let letters = [0.0, 5e-17, 5e-16, 0.5, 1e9].map(|error| pixel(&judged(Kind::Right, Some(error))));
         assert_eq!(letters, ['a', 'b', 'c', 'r', 'z']);
         assert_eq!(pixel(&judged(Kind::Missed, None)), 'M');
+    }
+
+    #[test]
+    fn letters_tell_steps_by_half_an_octave() {
+        assert_eq!([0, 1, 2, 3, 4, 7, 256, u32::MAX].map(effort), ['.', 'a', 'c', 'd', 'e', 'f', 'q', 'z']);
     }
 }

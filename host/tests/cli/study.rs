@@ -57,7 +57,9 @@ fn a_cell_is_measured_once_and_says_all() {
         let max = errors[part]["max"].as_f64().expect("a number");
         assert!(max > 0.0 && max < 1e-10, "{part}: {max}");
     }
-    assert_eq!(line(&all, "map")["pixels"].as_str().map(str::len), Some(384));
+    for map in ["pixels", "steps"] {
+        assert_eq!(line(&all, "map")[map].as_str().map(str::len), Some(384));
+    }
     assert_eq!(all.iter().filter(|line| line["line"] == "worst").count(), 10);
     let limited = lines(&folder, "results/newton-coherent.f64.newton-steps.4.jsonl");
     assert!(line(&limited, "counts")["gave_up"]["newton-steps"].as_u64() > Some(0));
@@ -137,7 +139,7 @@ fn a_report_names_what_is_missing_and_asks_for_nothing_from_elsewhere() {
     }
     let drawing = folder.text("page-work-precision-f64.svg");
     assert!(drawing.starts_with("<svg") && page.contains(&drawing));
-    assert!(folder.names().contains(&"page-map-clipping-f64.svg".to_owned()));
+    assert!(folder.names().contains(&"page-map-error-clipping-f64.svg".to_owned()));
     // Without a name the page lies with the results, and does not pass for one of them.
     folder.done("report results --quiet");
     assert!(folder.text("results/report.html").contains("338 of 340"));

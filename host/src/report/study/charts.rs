@@ -21,7 +21,7 @@ pub(super) fn colour(method: Method) -> &'static str {
 }
 
 /// The width of a diagram of which two stand in a row, and of one of which three do.
-const WIDE: f64 = 560.0;
+pub(super) const WIDE: f64 = 560.0;
 const SMALL: f64 = 430.0;
 
 /// A part of the page with its diagrams.

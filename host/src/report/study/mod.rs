@@ -5,6 +5,7 @@ mod maps;
 mod page;
 mod tables;
 
+use self::maps::Shown;
 use crate::scene::trace::{Method, Precision};
 use crate::study::folder::Manifest;
 use crate::study::plan::Knob;
@@ -103,13 +104,15 @@ impl StudyReport {
     pub fn render(&self, stem: &str) -> Rendered {
         let points = self.points();
         let drawings = charts::all(&points);
-        let heat = maps::all(&points);
+        let heat = [Shown::Error, Shown::Work].map(|shown| (maps::legend(shown), maps::all(&points, shown)));
         let html = page::html(self, &points, &drawings, &heat, stem);
         let drawings = drawings.into_iter().flat_map(|(_, drawings)| drawings).chain(heat).collect();
         Rendered { html, drawings }
     }
 
     /// The cells that were measured. Their times are brought to one pace, so that those of a busy minute, or of another
+        let heat = heat.into_iter().filter(|(_, maps)| !maps.is_empty());
+        let heat = heat.flat_map(|(legend, maps)| [legend].into_iter().chain(maps));
     /// machine, do not count as slow.
     fn points(&self) -> Vec<Point<'_>> {
         let measured = || self.records.iter().filter_map(|record| Some((record, record.result.as_ref().ok()?)));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::charts::{Section, title_of};
-use super::{Drawing, FAILED, Point, StudyReport, maps, tables};
+use super::{Drawing, FAILED, Point, StudyReport, tables};
 use crate::report::plot::escaped;
 use crate::report::table::grouped;
 use crate::study::machine::Machine;
@@ -17,7 +17,7 @@ pub(super) fn html(
     report: &StudyReport,
     points: &[Point],
     sections: &[Section],
-    heat: &[Drawing],
+    heat: &[(Drawing, Vec<Drawing>); 2],
     stem: &str,
 ) -> String {
     let manifest = &report.manifest;
@@ -74,11 +74,18 @@ pub(super) fn html(
          says how to ask <code>query</code> the same.</p>\n{}",
         tables::worst(points)
     ));
-    add(format_args!("<h2>Where the errors are</h2>\n{}<div class=\"maps\">", maps::legend()));
-    for drawing in heat {
-        add(format_args!("{}", figure(drawing)));
+    for (head, (legend, maps)) in ["Where the errors are", "Where the work is"].into_iter().zip(heat) {
+        add(format_args!("<h2>{head}</h2>"));
+        if maps.is_empty() {
+            add(format_args!("<p class=\"note\">No cell that is there has such a map.</p>"));
+            continue;
+        }
+        add(format_args!("<div class=\"legend\">{}</div>\n<div class=\"maps\">", figure(legend)));
+        for drawing in maps {
+            add(format_args!("{}", figure(drawing)));
+        }
+        add(format_args!("</div>"));
     }
-    add(format_args!("</div>"));
     add(format_args!(
         "<h2>All cells</h2>\n<details><summary>{} cells, with what each did per ray</summary>\n{}</details>",
         report.records.len(),

@@ -42,9 +42,16 @@ fn the_page_is_whole_and_asks_for_nothing_from_elsewhere() {
     }
     assert!(html.contains("1 of 341 cells are missing") && html.contains("clipping.f64.gone"));
     assert!(html.contains("a &lt;scene&gt;") && !html.contains("a <scene>"));
-    for part in
-        ["work-precision-f64", "work-precision-f32", "distribution-f64", "clip-threshold-lost-rays", "map-newton-f32"]
-    {
+    for part in [
+        "work-precision-f64",
+        "work-precision-f32",
+        "distribution-f64",
+        "clip-threshold-lost-rays",
+        "map-error-newton-f32",
+        "map-error-legend",
+        "map-work-clipping-predicted-f64",
+        "map-work-legend",
+    ] {
         assert!(drawings.iter().any(|drawing| drawing.name == part), "{part}");
     }
     let names: std::collections::BTreeSet<&str> = drawings.iter().map(|drawing| drawing.name.as_str()).collect();
@@ -78,4 +85,25 @@ fn the_answer_names_the_fastest_that_loses_nothing() {
     let nothing = nothing.render("study").html;
     assert!(nothing.contains("Nothing that was measured"));
     assert!(report(&[], &["a"]).render("study").html.contains("1 of 1 cells are missing"));
+}
+
+#[test]
+fn a_map_of_work_is_drawn_for_each_method_and_left_out_where_nothing_was_counted() {
+    let cells = plan(None, None);
+    let work = |report: &StudyReport| {
+        let drawings = report.render("study").drawings;
+        let names = drawings.into_iter().map(|drawing| drawing.name).filter(|name| name.starts_with("map-work-"));
+        names.collect::<Vec<String>>()
+    };
+    let whole = report(&cells, &[]);
+    assert_eq!(work(&whole).len(), 7);
+    // In f32 only where f64 is missing.
+    let mut half = whole.clone();
+    half.records.retain(|record| record.head.id != "newton.f64.default");
+    assert!(work(&half).contains(&"map-work-newton-f32".to_owned()) && work(&half).len() == 7);
+    let mut none = whole;
+    for record in &mut none.records {
+        record.result.as_mut().expect("measured").map.steps.clear();
+    }
+    assert!(work(&none).is_empty() && none.render("study").html.contains("No cell that is there has such a map"));
 }
