@@ -22,6 +22,7 @@ use crate::study::truth::of_picture;
 
 /// The command line of `study`.
 #[derive(Args, Clone, Debug)]
+#[command(mut_arg("output", |arg| arg.value_name("FOLDER").help("The folder of the results [default: target/study]")))]
 pub struct StudyArgs {
     /// A scene file (.toml) or the surfaces (.bpt, .json) [default: the teapot in the common view]
     pub scene: Option<PathBuf>,

@@ -144,3 +144,10 @@ fn a_report_names_what_is_missing_and_asks_for_nothing_from_elsewhere() {
     folder.done("report results --quiet");
     assert!(folder.text("results/report.html").contains("338 of 340"));
 }
+
+#[test]
+fn help_says_that_results_go_into_a_folder() {
+    let help = printed(&Folder::new().done("study --help"));
+    assert!(help.contains("--output <FOLDER>") && help.contains("[default: target/study]"), "{help}");
+    assert!(!help.contains("--output <FILE>"), "{help}");
+}
