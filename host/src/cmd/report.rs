@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::study::refused;
-use super::{Failure, say};
+use super::{Failure, StatsOutputs, check_outputs, say};
 use crate::output;
 use crate::report::study::StudyReport;
+use crate::settings::Flags;
 use crate::study::folder::Folder;
 
 /// The command line of `report`.
@@ -19,6 +20,12 @@ pub struct ReportArgs {
     /// The page to write [default: report.html in the folder]; its diagrams are written beside it, as SVG files
     #[arg(long, short, value_name = "FILE", help_heading = "Output")]
     pub output: Option<PathBuf>,
+    /// Write the figures of the page as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub stats: Option<PathBuf>,
+    /// Print JSON on standard output: what --stats writes
+    #[arg(long, help_heading = "Output")]
+    pub json: bool,
     /// No summary; warnings and errors stay
     #[arg(long, short, help_heading = "Output")]
     pub quiet: bool,
@@ -27,10 +34,14 @@ pub struct ReportArgs {
 /// Draws the page, and says what is missing.
 ///
 /// # Errors
-/// There is no study in the folder, or the page cannot be written.
+/// Flags that do not go together, no study in the folder, or the page cannot be written.
 pub fn run(args: &ReportArgs) -> Result<(), Failure> {
     let folder = Folder::open(&args.folder).map_err(refused)?;
     let path = args.output.clone().unwrap_or_else(|| args.folder.join("report.html"));
+    let flags = Flags { stats: args.stats.clone(), json: args.json, ..Flags::default() };
+    let files = folder.files();
+    check_outputs(Some(&path), &files.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &flags)?;
+    let stats_outputs = StatsOutputs::create(&flags)?;
     let (records, missing) = folder.read_all();
     let report = StudyReport { manifest: folder.manifest.clone(), records, missing };
     let stdout = path == Path::new("-");
@@ -44,6 +55,7 @@ pub fn run(args: &ReportArgs) -> Result<(), Failure> {
     }
     // Last, so that a page that is there has its diagrams.
     output::write(&path, |out| out.write_all(rendered.html.as_bytes()))?;
+    stats_outputs.finish(&report.data())?;
     for (id, reason) in &report.missing {
         let reason = reason.as_ref().map_or(String::new(), |reason| format!(" (its file is not whole: {reason})"));
         say(format_args!("missing: {id}{reason}"));

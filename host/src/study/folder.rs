@@ -109,6 +109,12 @@ impl Folder {
         Ok(Folder { path: path.to_owned(), manifest })
     }
 
+    /// All files that it has or is to have.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let cells = self.manifest.cells.iter().map(|id| self.file_of(id));
+        cells.chain([self.path.join(MANIFEST)]).collect()
+    }
+
     fn file_of(&self, id: &str) -> PathBuf {
         self.path.join(format!("{id}.{ENDING}"))
     }

@@ -94,7 +94,12 @@ impl Counts {
         self.other_sheet + self.missed + self.phantom + self.gave_up_in_all()
     }
 
-    /// The same as a share of all rays.
+    /// Rays whose answer is not right: those, and the ones that are off. What is undecided is not among them.
+    pub fn not_right(&self) -> u64 {
+        self.off + self.lost()
+    }
+
+    /// Lost rays as a share of all rays.
     pub fn lost_share(&self) -> f64 {
         self.lost() as f64 / self.rays.max(1) as f64
     }
@@ -137,14 +142,14 @@ pub struct Map {
     pub size: [u32; 2],
     /// What became of them; see [`pixel`](super::run::pixel).
     pub pixels: String,
+    /// The steps that they took; see [`effort`](super::run::effort). Empty in a record that does not say.
+    #[serde(default)]
+    pub steps: String,
 }
 
 /// A line of a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "line", rename_all = "kebab-case")]
-    /// The steps that they took; see [`effort`](super::run::effort). Empty in a record that does not say.
-    #[serde(default)]
-    pub steps: String,
 pub enum Line {
     /// What was measured.
     Cell(Head),

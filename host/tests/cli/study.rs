@@ -146,6 +146,27 @@ fn a_report_names_what_is_missing_and_asks_for_nothing_from_elsewhere() {
 }
 
 #[test]
+fn the_figures_of_a_report_come_as_json() {
+    let folder = Folder::new();
+    let only = "--only newton.f64.default --only newton.f64.paper";
+    folder.done(&format!("{SMALL} {only} -o results"));
+    let data: Value = serde_json::from_str(&printed(&folder.done("report results --json -o page.html"))).expect("JSON");
+    assert_eq!((&data["schema"], &data["size"]), (&1.into(), &serde_json::json!([24, 16])));
+    let ids: Vec<&str> =
+        data["cells"].as_array().expect("a list").iter().filter_map(|cell| cell["id"].as_str()).collect();
+    assert_eq!(ids, ["newton.f64.default", "newton.f64.paper"]);
+    assert_eq!(data["missing"].as_array().map(Vec::len), Some(338));
+    assert!(data["acceptance"][0]["time_ratio"].as_f64() > Some(0.0), "{data}");
+    assert!(folder.text("page.html").contains("The price of being sure"));
+    folder.done("report results --quiet --stats figures.json");
+    assert_eq!(folder.json("figures.json"), data);
+    // The page alone may go to standard output, and so may the figures; neither replaces what it is made of.
+    folder.fails("report results -o - --json", 2, &["standard output"]);
+    folder.fails("report results -o results/study.json", 2, &["replace an input"]);
+    folder.fails("report results --stats results/newton.f64.paper.jsonl", 2, &["replace an input"]);
+}
+
+#[test]
 fn help_says_that_results_go_into_a_folder() {
     let help = printed(&Folder::new().done("study --help"));
     assert!(help.contains("--output <FOLDER>") && help.contains("[default: target/study]"), "{help}");

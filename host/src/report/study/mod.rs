@@ -1,13 +1,17 @@
 //! What a study measured, as one page of HTML with its diagrams in it, and as SVG files.
 
 mod charts;
+pub mod data;
 mod maps;
 mod page;
 mod tables;
 
+use std::collections::BTreeMap;
+
 use self::maps::Shown;
 use crate::scene::trace::{Method, Precision};
 use crate::study::folder::Manifest;
+use crate::study::machine::Machine;
 use crate::study::plan::Knob;
 use crate::study::record::{Measured, Record};
 
@@ -106,13 +110,27 @@ impl StudyReport {
         let drawings = charts::all(&points);
         let heat = [Shown::Error, Shown::Work].map(|shown| (maps::legend(shown), maps::all(&points, shown)));
         let html = page::html(self, &points, &drawings, &heat, stem);
+        let heat = heat.into_iter().filter(|(_, maps)| !maps.is_empty());
+        let heat = heat.flat_map(|(legend, maps)| [legend].into_iter().chain(maps));
         let drawings = drawings.into_iter().flat_map(|(_, drawings)| drawings).chain(heat).collect();
         Rendered { html, drawings }
     }
 
+    /// The machines that measured it, and how many cells each.
+    fn machines(&self) -> BTreeMap<&Machine, usize> {
+        let mut all = BTreeMap::new();
+        for record in &self.records {
+            *all.entry(&record.machine).or_default() += 1;
+        }
+        all
+    }
+
+    /// The names of the cells that could not be traced, with why.
+    fn not_traced(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.records.iter().filter_map(|record| Some((record.head.id.as_str(), record.result.as_ref().err()?.as_str())))
+    }
+
     /// The cells that were measured. Their times are brought to one pace, so that those of a busy minute, or of another
-        let heat = heat.into_iter().filter(|(_, maps)| !maps.is_empty());
-        let heat = heat.flat_map(|(legend, maps)| [legend].into_iter().chain(maps));
     /// machine, do not count as slow.
     fn points(&self) -> Vec<Point<'_>> {
         let measured = || self.records.iter().filter_map(|record| Some((record, record.result.as_ref().ok()?)));

@@ -1,10 +1,9 @@
 //! The page itself.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::charts::{Section, title_of};
-use super::{Drawing, FAILED, Point, StudyReport, tables};
+use super::{Drawing, FAILED, Point, StudyReport, data, tables};
 use crate::report::plot::escaped;
 use crate::report::table::grouped;
 use crate::study::machine::Machine;
@@ -52,6 +51,15 @@ pub(super) fn html(
          f32, more where a ray all but grazes). Doubled: roots found more than once. Paper: under <code>--acceptance \
          paper</code>.</p>"
     ));
+    if let Some(prices) = tables::prices(&data::prices(points)) {
+        add(format_args!("<h2>The price of being sure</h2>\n{prices}"));
+        add(format_args!(
+            "<p class=\"note\">Under <code>--acceptance paper</code> a patch holds at most one hit by eq. (1) of the paper, and \
+             none where Newton's method finds none; under <code>proved</code>, the default, that has to be proved, or the patch \
+             is clipped. <code>clipping</code> proves all its answers in any case. Not right: off, another sheet, missed, \
+             phantom, or given up.</p>"
+        ));
+    }
     for (knob, drawings) in sections {
         let head =
             if *knob == Knob::Default { "Error over time".to_owned() } else { format!("Over {}", title_of(*knob)) };
@@ -130,7 +138,7 @@ fn note_of(knob: Knob) -> Option<&'static str> {
 const FASTER: f64 = 0.9;
 
 /// Which method and setting to take, in a sentence of HTML.
-fn answer(points: &[Point]) -> String {
+pub(super) fn answer(points: &[Point]) -> String {
     let fit = |error: f64| {
         let fit = || {
             points.iter().filter(move |point| {
@@ -183,8 +191,16 @@ fn setting_of(point: &Point) -> String {
 /// What is not there yet.
 fn missing(report: &StudyReport) -> String {
     let all = report.records.len() + report.missing.len();
+    let not_traced = report.not_traced().count();
+    let not_traced = if not_traced > 0 {
+        format!(
+            "<p class=\"missing\">{not_traced} of {all} cells could not be traced at all, and are in no diagram.</p>"
+        )
+    } else {
+        String::new()
+    };
     if report.missing.is_empty() {
-        return format!("<p class=\"note\">All {all} cells are there.</p>");
+        return format!("<p class=\"note\">All {all} cells are there.</p>{not_traced}");
     }
     let names: Vec<String> = report
         .missing
@@ -196,7 +212,7 @@ fn missing(report: &StudyReport) -> String {
         .collect();
     format!(
         "<div class=\"missing\"><details><summary>{} of {all} cells are missing: run the study again to measure \
-         them</summary><p>{}</p></details></div>",
+         them</summary><p>{}</p></details></div>{not_traced}",
         names.len(),
         names.join(", ")
     )
@@ -204,10 +220,7 @@ fn missing(report: &StudyReport) -> String {
 
 /// On what it was measured.
 fn machines(report: &StudyReport) -> String {
-    let mut all: BTreeMap<&Machine, usize> = BTreeMap::new();
-    for record in &report.records {
-        *all.entry(&record.machine).or_default() += 1;
-    }
+    let all = report.machines();
     let mut html = String::new();
     for (machine, cells) in &all {
         let Machine { processor, cores, system, architecture, version, compiler, release } = machine;

@@ -1,6 +1,7 @@
 //! The tables of a study's page.
 
 use super::Point;
+use super::data::Price;
 use crate::judge::allowance;
 use crate::report::plot::escaped;
 use crate::report::table::grouped;
@@ -89,6 +90,28 @@ pub(super) fn defaults(points: &[Point]) -> String {
     table(&heads, &rows)
 }
 
+/// What it costs to be sure, and what it saves; nothing where no method was measured under both acceptances.
+pub(super) fn prices(prices: &[Price]) -> Option<String> {
+    let heads = [
+        ("method", true),
+        ("", true),
+        ("paper, ns per ray", false),
+        ("proved, ns per ray", false),
+        ("time ratio", false),
+        ("paper, not right", false),
+        ("proved, not right", false),
+        ("of rays", false),
+    ];
+    let row = |price: &Price| {
+        let [paper, proved] = price.ns_per_ray.map(|ns| format!("{ns:.0}"));
+        let [wrong, right] = price.not_right.map(grouped);
+        let names = [price.method.name(), price.precision.name()].map(str::to_owned);
+        let numbers = [paper, proved, format!("{:.2}", price.time_ratio), wrong, right, grouped(price.rays)];
+        names.into_iter().chain(numbers).collect()
+    };
+    (!prices.is_empty()).then(|| table(&heads, &prices.iter().map(row).collect::<Vec<Vec<String>>>()))
+}
+
 /// All cells, with what they did.
 pub(super) fn all(points: &[Point], records: &[Record]) -> String {
     let mut heads = vec![("cell", true)];
@@ -129,9 +152,9 @@ pub(super) fn all(points: &[Point], records: &[Record]) -> String {
 /// How many bad answers are shown.
 const WORST: usize = 10;
 
-/// The worst answers of the cells with default settings: those that are lost first, the farthest from a graze before the
-/// others; then those that use up most of the allowance of their precision.
-pub(super) fn worst(points: &[Point]) -> String {
+/// The worst answers of the cells with default settings, with the cell of each: those that are lost first, the farthest from
+/// a graze before the others; then those that use up most of the allowance of their precision.
+pub(super) fn worst_of<'p, 'r>(points: &'p [Point<'r>]) -> Vec<(&'p Point<'r>, &'r Worst)> {
     let defaults = points.iter().filter(|point| point.record.head.knob == Knob::Default);
     let mut all: Vec<(&Point, &Worst)> =
         defaults.flat_map(|point| point.measured.worst.iter().map(move |worst| (point, worst))).collect();
@@ -143,9 +166,14 @@ pub(super) fn worst(points: &[Point]) -> String {
             if one.1.kind.is_lost() { other.1.margin.total_cmp(&one.1.margin) } else { std::cmp::Ordering::Equal };
         lost.then(safe).then(used(other).total_cmp(&used(one)))
     });
-    let rows: Vec<Vec<String>> = all
+    all.truncate(WORST);
+    all
+}
+
+/// The worst answers, as a table.
+pub(super) fn worst(points: &[Point]) -> String {
+    let rows: Vec<Vec<String>> = worst_of(points)
         .into_iter()
-        .take(WORST)
         .map(|(point, worst)| {
             let [x, y] = worst.pixel;
             let limit = worst.limit.as_ref().map_or(String::new(), |limit| format!(": {}", escaped(limit)));

@@ -107,3 +107,57 @@ fn a_map_of_work_is_drawn_for_each_method_and_left_out_where_nothing_was_counted
     }
     assert!(work(&none).is_empty() && none.render("study").html.contains("No cell that is there has such a map"));
 }
+
+#[test]
+fn data_has_the_figures_of_the_page() {
+    let cells = plan(None, None);
+    let mut report = report(&cells, &["clipping.f64.gone"]);
+    report.records[1].result = Err("no room".to_owned());
+    let data = serde_json::to_value(report.data()).expect("plain");
+    let list = |name: &str| data[name].as_array().expect("a list").clone();
+    assert_eq!((data["schema"].as_u64(), list("cells").len()), (Some(u64::from(SCHEMA)), cells.len() - 1));
+    assert_eq!(
+        (&list("missing")[0]["id"], &list("not_traced")[0]["reason"]),
+        (&"clipping.f64.gone".into(), &"no room".into())
+    );
+    let html = report.render("study").html;
+    assert!(html.contains("1 of 341 cells could not be traced at all"));
+    for cell in list("cells") {
+        let ns = cell["ns_per_ray"].as_f64().expect("a number");
+        let row = format!("<td class=\"text\">{}</td><td>{ns:.0}</td>", cell["id"].as_str().expect("a name"));
+        assert!(html.contains(&row), "{row}");
+    }
+    let failed = list("cells").iter().filter(|cell| cell["failed"] == true).count();
+    assert_eq!(failed, report.points().iter().filter(|point| point.failed()).count());
+    let machines: u64 = list("machines").iter().map(|machine| machine["cells"].as_u64().expect("a count")).sum();
+    assert_eq!(machines, cells.len() as u64);
+    for worst in list("worst") {
+        assert!(html.contains(worst["command"].as_str().expect("a command")));
+    }
+    let answer = data["answer"].as_str().expect("a sentence");
+    assert!(answer.ends_with('.') && answer.contains('`') && !answer.contains('<'), "{answer}");
+}
+
+#[test]
+fn the_price_of_being_sure_is_told_where_both_were_measured() {
+    let cells = plan(None, None);
+    let whole = report(&cells, &[]);
+    let prices = data::prices(&whole.points());
+    assert_eq!(prices.len(), 10);
+    assert!(prices.iter().all(|price| price.method != Method::Clipping));
+    let points = whole.points();
+    let ns = |id: &str| points.iter().find(|point| point.record.head.id == id).expect("it is there").ns;
+    let own = [ns("newton.f64.paper"), ns("newton.f64.default")];
+    assert_eq!((prices[0].ns_per_ray, prices[0].time_ratio), (own, own[1] / own[0]));
+    assert!(whole.render("study").html.contains("The price of being sure"));
+    // Without the paper's cells, or where all cells have its acceptance, there is nothing to compare.
+    let mut proved = whole.clone();
+    proved.records.retain(|record| record.head.knob != Knob::Paper);
+    assert!(data::prices(&proved.points()).is_empty());
+    assert!(!proved.render("study").html.contains("The price of being sure"));
+    let mut paper = whole.clone();
+    for record in &mut paper.records {
+        record.head.settings["acceptance"] = "paper".into();
+    }
+    assert!(data::prices(&paper.points()).is_empty());
+}
