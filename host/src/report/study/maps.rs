@@ -10,6 +10,7 @@ use super::charts::WIDE;
 use super::{Drawing, Point};
 use crate::picture::{Picture, Rgb};
 use crate::report::plot::{escaped, power};
+use crate::report::table::grouped;
 use crate::scene::trace::{Method, Precision};
 use crate::study::plan::Knob;
 
@@ -127,7 +128,7 @@ fn drawing(point: &Point, shown: Shown) -> Option<Drawing> {
     );
     let per_ray = |name: &str| counts.work.get(name).map_or(0.0, |&sum| sum as f64 / counts.rays.max(1) as f64);
     let caption = match shown {
-        Shown::Error => format!("{name}: {} lost of {}", counts.lost(), counts.rays),
+        Shown::Error => format!("{name}: {} of {} lost", grouped(counts.lost()), grouped(counts.rays)),
         Shown::Work => {
             format!(
                 "{name}: {:.2} Newton steps and {:.2} clips per ray",

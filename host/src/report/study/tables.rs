@@ -95,18 +95,17 @@ pub(super) fn prices(prices: &[Price]) -> Option<String> {
     let heads = [
         ("method", true),
         ("", true),
-        ("paper, ns per ray", false),
-        ("proved, ns per ray", false),
+        ("paper ns per ray", false),
+        ("proved ns per ray", false),
         ("time ratio", false),
-        ("paper, not right", false),
-        ("proved, not right", false),
-        ("of rays", false),
+        ("paper not right", false),
+        ("proved not right", false),
     ];
     let row = |price: &Price| {
         let [paper, proved] = price.ns_per_ray.map(|ns| format!("{ns:.0}"));
         let [wrong, right] = price.not_right.map(grouped);
         let names = [price.method.name(), price.precision.name()].map(str::to_owned);
-        let numbers = [paper, proved, format!("{:.2}", price.time_ratio), wrong, right, grouped(price.rays)];
+        let numbers = [paper, proved, format!("{:.2}", price.time_ratio), wrong, right];
         names.into_iter().chain(numbers).collect()
     };
     (!prices.is_empty()).then(|| table(&heads, &prices.iter().map(row).collect::<Vec<Vec<String>>>()))
