@@ -41,12 +41,12 @@ pub(super) enum Content<R> {
 /// Newton steps before the fixed-matrix iteration takes over: a domain with q ≤ 1/2 converges in about 5 in f64, and
 /// every step doubles the digits.
 const fn newton_steps<R: Real>() -> usize {
-    7 + R::DIGITS.ilog2() as usize
+    7 + R::BITS.ilog2() as usize
 }
 
 /// Steps with the fixed matrix: enough to halve the radius from 1/2 to the least floor.
 const fn matrix_steps<R: Real>() -> usize {
-    R::DIGITS
+    R::BITS
 }
 
 /// Finds what `domain` holds, its derivative coefficients having q ≤ 1/2. `error` bounds the rounding error of a

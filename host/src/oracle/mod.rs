@@ -63,7 +63,7 @@ pub struct Verdict {
     /// - 0, if an unresolved part may be closer than the closest root.
     ///
     /// Clearances are lower bounds by convex hulls, so an ordinary ray's margin may be some 1/1000, whatever it passes.
-    /// Below 1e-12 the answer cannot be judged in f64, below 1e-28 not in double-double. A surface that meets its neighbour without sharing control points
+    /// Below [`Real::LEAST_MARGIN`] the answer cannot be judged. A surface that meets its neighbour without sharing control points
     /// to within rounding has an outer border there.
     pub margin: f64,
     /// Domains that ended neither with a root nor excluded: tangencies, surfaces seen edge on, work beyond the bound on
@@ -76,8 +76,8 @@ pub type Oracle = OracleIn<f64>;
 
 /// All surfaces of a model, made ready for any number of rays; shared by threads. `R` is the number that it works in.
 ///
-/// In [`DoubleDouble`] it takes the same f64 exactly and judges answers down to margins of about 1e-28, for some 30 times
-/// the time. Seams whose control points differ in the last place of f64 are two outer borders to it: there the surfaces
+/// In [`DoubleDouble`] it takes the same f64 exactly and judges answers down to margins of 1e-26, for some 10 times the
+/// time. Seams whose control points differ in the last place of f64 are two outer borders to it: there the surfaces
 /// do overlap or leave a crack.
 #[derive(Clone, Debug)]
 pub struct OracleIn<R> {

@@ -32,10 +32,13 @@ pub trait Real:
     + 'static
 {
     /// Binary digits: those that operations are proved to leave.
-    const DIGITS: usize;
-    /// The unit of rounding that bounds are stated in, 2^(1 - `DIGITS`): at least twice the largest relative error of one
+    const BITS: usize;
+    /// The unit of rounding that bounds are stated in, 2^(1 - `BITS`): at least twice the largest relative error of one
     /// operation.
     const EPS: f64;
+    /// The margin below which an answer cannot be judged, as long as coordinates are not much larger than the model's
+    /// extent: some thousand `EPS`, in units of the model's diagonal.
+    const LEAST_MARGIN: f64;
     /// What [`Real::on_ray`] may be off by, as a part of the distance between the ray's origin and the point.
     const SLIP: f64;
     /// 0.
@@ -98,8 +101,9 @@ pub trait Real:
 }
 
 impl Real for f64 {
-    const DIGITS: usize = f64::MANTISSA_DIGITS as usize;
+    const BITS: usize = f64::MANTISSA_DIGITS as usize;
     const EPS: f64 = f64::EPSILON;
+    const LEAST_MARGIN: f64 = 1e-12;
     const SLIP: f64 = 0.0;
     const ZERO: f64 = 0.0;
     const ONE: f64 = 1.0;
@@ -185,8 +189,9 @@ fn product(a: f64, b: f64) -> DoubleDouble {
 
 impl Real for DoubleDouble {
     // 32 u² = 2⁻¹⁰¹ is at least twice the error of any operation.
-    const DIGITS: usize = 102;
+    const BITS: usize = 102;
     const EPS: f64 = 8.0 * f64::EPSILON * f64::EPSILON;
+    const LEAST_MARGIN: f64 = 1e-26;
     const SLIP: f64 = Self::EPS * f64::EPSILON;
     const ZERO: DoubleDouble = DoubleDouble::new(0.0);
     const ONE: DoubleDouble = DoubleDouble::new(1.0);
@@ -256,7 +261,53 @@ mod tests {
 
     #[test]
     fn units_of_rounding_are_the_digits() {
-        assert_eq!(f64::EPS, 2f64.powi(1 - f64::DIGITS as i32));
-        assert_eq!(DoubleDouble::EPS, 2f64.powi(1 - DoubleDouble::DIGITS as i32));
+        fn unit<R: Real>() -> f64 {
+            2f64.powi(1 - R::BITS as i32)
+        }
+        assert_eq!(f64::EPS, unit::<f64>());
+        assert_eq!(DoubleDouble::EPS, unit::<DoubleDouble>());
+    }
+
+    #[test]
+    fn double_double_keeps_its_digits_from_tiny_to_huge() {
+        let near = |a: DoubleDouble, b: DoubleDouble| {
+            let error = (a - b).abs().to_f64();
+            assert!(error <= 2.0 * DoubleDouble::EPS * b.abs().to_f64(), "{a:?} {b:?}");
+        };
+        let third = DoubleDouble::ONE / DoubleDouble::new(3.0);
+        for exponent in [-660, -300, -1, 0, 1, 300, 660] {
+            let unit = 2f64.powi(exponent);
+            let mut x = third.times(unit);
+            for k in 1..200 {
+                x = x + third.times(unit * k as f64);
+                let y = DoubleDouble::new(1.0 + k as f64).sqrt() / x;
+                near(x * y * (x * y), DoubleDouble::new(1.0 + k as f64));
+                near(y / third * third, y);
+                near(DoubleDouble::over([third], x)[0] * x, third);
+                assert_eq!(x.half() + x.half(), x);
+                assert_eq!((x - x.half()).half().half().to_f64(), 0.125 * x.to_f64());
+            }
+        }
+    }
+
+    #[test]
+    fn infinities_differ_by_infinities() {
+        let [one, infinity] = [DoubleDouble::ONE, DoubleDouble::INFINITY];
+        assert_eq!(infinity.less(one), f64::INFINITY);
+        assert_eq!(one.less(infinity), f64::NEG_INFINITY);
+        assert!(DoubleDouble::new(f64::NAN).less(one).is_nan());
+        assert_eq!(DoubleDouble::new(f64::NAN).smaller(one), one);
+        assert_eq!(one.larger(DoubleDouble::new(f64::NAN)), one);
+        assert!(infinity > one && -infinity < one);
+    }
+
+    #[test]
+    fn a_point_of_a_ray_from_afar_loses_nothing() {
+        // 1/3 in f64 times 3 2^80, against the origin: what is left is known exactly.
+        let t = DoubleDouble::new(3.0 * 2f64.powi(80)) + DoubleDouble::new(0.125);
+        let left = t.on_ray(-(2f64.powi(80)), 1.0 / 3.0);
+        // 3 RN(1/3) = 1 - 2^-54.
+        let expected = DoubleDouble::new(-(2f64.powi(26))) + DoubleDouble::new(1.0 / 3.0).times(0.125);
+        assert_eq!(left, expected);
     }
 }

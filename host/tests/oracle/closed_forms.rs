@@ -1,17 +1,25 @@
 //! Thousands of random rays against spheres, cylinders, tori, bilinear surfaces and planes.
 
 use crate::truth::*;
-use patchray_host::oracle::Oracle;
+use patchray_host::oracle::{OracleIn, Real};
 use patchray_host::scene::shapes::{Random, bilinear, cylinder, elevate, parallelogram, single, sphere, torus};
 
-#[test]
-fn spheres_at_any_place_and_size() {
+in_either!(
+    spheres_at_any_place_and_size
+    rays_that_graze_a_sphere
+    a_cylinder_and_its_open_ends
+    tori_of_any_number_of_arcs
+    bilinear_surfaces_of_any_degree
+    planes_of_any_degree_and_uneven_weights
+);
+
+fn spheres_at_any_place_and_size<R: Real>(fewer: usize) {
     let mut random = Random(11);
     for (centre, radius) in [([0.5, -1.0, 2.0], 1.5), ([0.0; 3], 1e-6), ([3e5, -1e5, 2e5], 1e5)] {
-        let oracle = Oracle::new(&sphere(centre, radius));
+        let oracle = OracleIn::<R>::new(&sphere(centre, radius));
         let diagonal = 12f64.sqrt() * radius;
-        let mut tally = Tally::default();
-        for _ in 0..4000 {
+        let mut tally = Tally::of::<R>();
+        for _ in 0..4000 / fewer {
             let (origin, d) = toward(&mut random, centre, radius);
             let (mut truth, clearance) = meet_sphere(origin, d, centre, radius);
             let verdict = oracle.trace(origin, d, 0.0, f64::INFINITY);
@@ -25,16 +33,15 @@ fn spheres_at_any_place_and_size() {
     }
 }
 
-#[test]
-fn rays_that_graze_a_sphere() {
+fn rays_that_graze_a_sphere<R: Real>(fewer: usize) {
     let mut random = Random(12);
     let (centre, radius) = ([0.5, -1.0, 2.0], 1.5);
-    let oracle = Oracle::new(&sphere(centre, radius));
+    let oracle = OracleIn::<R>::new(&sphere(centre, radius));
     let diagonal = 12f64.sqrt() * radius;
     for exponent in 1..=15 {
-        let mut tally = Tally::default();
+        let mut tally = Tally::of::<R>();
         let mut least: f64 = 1.0;
-        for _ in 0..400 {
+        for _ in 0..400 / fewer {
             let n = unit(random.point(1.0));
             let d = tangent(&mut random, n);
             let depth = 10f64.powi(-exponent) * random.within(-1.0, 1.0).signum();
@@ -58,13 +65,12 @@ fn rays_that_graze_a_sphere() {
     }
 }
 
-#[test]
-fn a_cylinder_and_its_open_ends() {
+fn a_cylinder_and_its_open_ends<R: Real>(fewer: usize) {
     let mut random = Random(13);
     let (centre, radius, height) = ([-2.0, 1.0, 0.25], 0.75, 2.0);
-    let oracle = Oracle::new(&cylinder(centre, radius, height));
-    let mut tally = Tally::default();
-    for _ in 0..6000 {
+    let oracle = OracleIn::<R>::new(&cylinder(centre, radius, height));
+    let mut tally = Tally::of::<R>();
+    for _ in 0..6000 / fewer {
         let (origin, d) = toward(&mut random, centre, 1.0);
         let from = sub(origin, centre);
         let a = d[0] * d[0] + d[1] * d[1];
@@ -135,15 +141,14 @@ fn bisect(turns: &[f64], reach: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
     roots
 }
 
-#[test]
-fn tori_of_any_number_of_arcs() {
+fn tori_of_any_number_of_arcs<R: Real>(fewer: usize) {
     let mut random = Random(14);
     let (major, minor) = (2.0, 0.75);
     for (around, across) in [(4, 4), (3, 5), (6, 3)] {
-        let oracle = Oracle::new(&torus([0.0; 3], major, minor, around, across));
-        let mut tally = Tally::default();
+        let oracle = OracleIn::<R>::new(&torus([0.0; 3], major, minor, around, across));
+        let mut tally = Tally::of::<R>();
         let mut four = 0;
-        for n in 0..4000 {
+        for n in 0..4000 / fewer {
             let (origin, d) = if n % 2 == 0 {
                 toward(&mut random, [0.0; 3], 2.5)
             } else {
@@ -161,7 +166,7 @@ fn tori_of_any_number_of_arcs() {
             let verdict = oracle.trace(origin, d, 0.0, f64::INFINITY);
             tally.add("torus", &verdict, &truth, 8.0, clear);
         }
-        assert!(four > 100, "{four}");
+        assert!(four > 100 / fewer, "{four}");
         tally.expect(0.9, 0.85, [0.4, 0.95]);
     }
 }
@@ -197,17 +202,16 @@ fn meet_bilinear(origin: Vector, d: Vector, corners: [Vector; 4]) -> (Vec<f64>, 
     (roots, clear)
 }
 
-#[test]
-fn bilinear_surfaces_of_any_degree() {
+fn bilinear_surfaces_of_any_degree<R: Real>(fewer: usize) {
     let mut random = Random(15);
     let mut two = 0;
-    let mut tally = Tally::default();
-    for n in 0..300 {
+    let mut tally = Tally::of::<R>();
+    for n in 0..300 / fewer {
         let corners =
             [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)].map(|(x, y)| add([x, y, 0.0], 1.4, random.point(1.0)));
         let surface = bilinear(corners);
         let degrees = [[1, 1], [3, 3], [2, 5], [1, 7]][n % 4];
-        let oracle = Oracle::new(&single(elevate(&surface, degrees[0], degrees[1])));
+        let oracle = OracleIn::<R>::new(&single(elevate(&surface, degrees[0], degrees[1])));
         for _ in 0..20 {
             let (origin, d) = toward(&mut random, [0.0; 3], 1.0);
             let (truth, clear) = meet_bilinear(origin, d, corners);
@@ -216,12 +220,11 @@ fn bilinear_surfaces_of_any_degree() {
             tally.add("bilinear", &verdict, &truth, 3.0, clear);
         }
     }
-    assert!(two > 20, "{two}");
+    assert!(two > 20 / fewer, "{two}");
     tally.expect(0.999, 0.99, [0.2, 0.8]);
 }
 
-#[test]
-fn planes_of_any_degree_and_uneven_weights() {
+fn planes_of_any_degree_and_uneven_weights<R: Real>(fewer: usize) {
     let mut random = Random(16);
     let (corner, along_u, along_v) = ([-1.0, -0.5, 0.25], [2.0, 0.5, 0.125], [-0.25, 1.5, 0.5]);
     let plane = parallelogram(corner, along_u, along_v);
@@ -232,9 +235,9 @@ fn planes_of_any_degree_and_uneven_weights() {
     }
     let normal = cross(along_u, along_v);
     for surface in [plane.clone(), elevate(&plane, 1, 4), elevate(&plane, 15, 15), heavy] {
-        let oracle = Oracle::new(&single(surface));
-        let mut tally = Tally::default();
-        for _ in 0..1000 {
+        let oracle = OracleIn::<R>::new(&single(surface));
+        let mut tally = Tally::of::<R>();
+        for _ in 0..1000 / fewer {
             let (origin, d) = toward(&mut random, [0.0; 3], 1.0);
             let from = sub(corner, origin);
             let t = dot(from, normal) / dot(d, normal);

@@ -1,12 +1,12 @@
 //! What the tests share: vectors, the sphere's equation, and the comparison of a verdict with the true roots.
 
-use patchray_host::oracle::Verdict;
+use patchray_host::oracle::{Real, Verdict};
 use patchray_host::scene::shapes::Random;
 
 pub(crate) type Vector = [f64; 3];
 
-/// The margin below which an answer cannot be judged.
-pub(crate) const JUDGED: f64 = 1e-12;
+/// The margin below which an answer cannot be judged by what is solved in f64.
+pub(crate) const JUDGED: f64 = <f64 as Real>::LEAST_MARGIN;
 
 pub(crate) fn add(a: Vector, s: f64, b: Vector) -> Vector {
     [0, 1, 2].map(|k| a[k] + s * b[k])
@@ -52,9 +52,16 @@ pub(crate) fn quadratic(a: f64, b: f64, c: f64) -> Vec<f64> {
     roots
 }
 
+/// How many times a blur in `R` is one in f64: control points and what is solved here are rounded to f64.
+pub(crate) fn rounding<R: Real>() -> f64 {
+    f64::EPSILON / R::EPS
+}
+
 /// What a set of answers came to.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Tally {
+    /// As [`rounding`].
+    pub(crate) rounding: f64,
     pub(crate) rays: usize,
     pub(crate) judged: usize,
     pub(crate) hits: usize,
@@ -64,6 +71,11 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
+    /// Of no answers yet, of an oracle in `R`.
+    pub(crate) fn of<R: Real>() -> Tally {
+        Tally { rounding: rounding::<R>(), rays: 0, judged: 0, hits: 0, complete: 0, worst: 0.0 }
+    }
+
     /// Compares a verdict on a ray with a direction of length 1 with the true roots, sorted. `complete` says that the
     /// number of true roots is beyond doubt.
     pub(crate) fn add(&mut self, what: &str, verdict: &Verdict, truth: &[f64], size: f64, complete: bool) {
@@ -73,10 +85,11 @@ impl Tally {
         }
         let mut compare = |t: f64, root: &patchray_host::oracle::Root| {
             let error = (t - root.t).abs() / size;
-            assert!(error <= 1e-14 + root.blur, "{what}: off by {error}: {verdict:?} {truth:?}");
+            let blur = self.rounding * root.blur;
+            assert!(error <= 1e-14 + blur, "{what}: off by {error}: {verdict:?} {truth:?}");
             // The blur is rounding over the cosine: large only near a silhouette.
-            assert!(root.blur < 1e-10 || root.margin < 1e-7, "{what}: {verdict:?}");
-            self.worst = self.worst.max(error / root.blur);
+            assert!(blur < 1e-10 || root.margin < 1e-7, "{what}: {verdict:?}");
+            self.worst = self.worst.max(error / blur);
         };
         if verdict.margin >= JUDGED {
             self.judged += 1;
