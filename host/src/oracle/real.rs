@@ -279,7 +279,7 @@ mod tests {
             let unit = 2f64.powi(exponent);
             let mut x = third.times(unit);
             for k in 1..200 {
-                x = x + third.times(unit * k as f64);
+                x += third.times(unit * k as f64);
                 let y = DoubleDouble::new(1.0 + k as f64).sqrt() / x;
                 near(x * y * (x * y), DoubleDouble::new(1.0 + k as f64));
                 near(y / third * third, y);
