@@ -76,7 +76,7 @@ pub type Oracle = OracleIn<f64>;
 
 /// All surfaces of a model, made ready for any number of rays; shared by threads. `R` is the number that it works in.
 ///
-/// In [`DoubleDouble`] it takes the same f64 exactly and judges answers down to margins of 1e-26, for some 10 times the
+/// In [`DoubleDouble`] it takes the same f64 exactly and judges answers down to margins of 1e-26, in 10 to 15 times the
 /// time. Seams whose control points differ in the last place of f64 are two outer borders to it: there the surfaces
 /// do overlap or leave a crack.
 #[derive(Clone, Debug)]
