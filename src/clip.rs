@@ -28,7 +28,7 @@ pub enum Clip<S> {
 pub struct Noise<S> {
     /// By how much each coefficient may be off.
     pub error: S,
-    /// How far the surface may pass from the ray and still count as meeting it, times the least weight.
+    /// How far the surface may pass from the ray and still count as meeting it, times the least weight of the net.
     pub tolerance: S,
 }
 

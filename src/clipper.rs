@@ -10,13 +10,14 @@
 //! (1997) found, where a region shrinks to a point that the ray passes by.
 
 use crate::bernstein::{BasisView, Full};
-use crate::clip::{Clip, Noise, clip};
+use crate::clip::{Clip, clip};
 use crate::contract::{Contraction, Single, contract, single};
+use crate::graze::{Across, across, allowed, first_met, on_line, polished};
 use crate::limits::{Limit, Limits, Work, spend};
-use crate::newton::{Local, Place, Root, noise};
+use crate::newton::{Local, Place, Root};
 use crate::part::Part;
 use crate::planes::{Planes, project_net};
-use crate::point::{Flat, Point};
+use crate::point::Point;
 use crate::region::{Order, Region};
 use crate::roots::Seen;
 use crate::scalar::Scalar;
@@ -132,8 +133,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
         }
         pending.clear();
         roots.clear();
-        let least = whole.iter().fold(P::Scalar::ONE, |least, point| least.lesser(point.weight()));
-        let tolerance = limits.tolerance * least;
+        let tolerance = limits.tolerance;
         // Whether the last clip, which was of the other parameter, found it settled.
         let mut settled = false;
         let mut bisected = false;
@@ -142,7 +142,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
             spend(&mut work.clip_steps, limits.clip_steps, Limit::ClipSteps)?;
             let direction = part.region.next;
             part.region.next = direction.other();
-            let noise = Noise { error: part.error, tolerance };
+            let noise = part.noise(tolerance);
             let mut step = match clip(part.degrees, part.net, direction, &noise) {
                 Clip::Nothing => Step::Done(None),
                 Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
@@ -157,8 +157,21 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                 // collapsed edge, is not to be halved when the other, settled as seen across its own line, is what keeps it
                 // from being clipped.
                 Clip::Part(_) => {
-                    let halved = if settled { part.longer() } else { direction };
-                    part.region.halves(halved).map_or(Step::Settled, Step::Bisect)
+                    let halves = || {
+                        let halved = if settled { part.longer() } else { direction };
+                        part.region.halves(halved).map_or(Step::Settled, Step::Bisect)
+                    };
+                    match across(part.degrees, part.net, &noise) {
+                        Across::Apart => Step::Done(None),
+                        Across::Line(along) => {
+                            match on_line(surface, planes, whole, &part.region, along, [tolerance, part.error], basis)?
+                            {
+                                None => halves(),
+                                place => Step::Done(place),
+                            }
+                        }
+                        Across::Open => halves(),
+                    }
                 }
                 Clip::Settled => Step::Settled,
             };
@@ -186,7 +199,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                 }
             };
             if let Some(place) = done {
-                let root = place.root(&surface.net, planes, limits, basis)?;
+                let root = place.root(&surface.net, whole, planes, limits, basis)?;
                 let seen = Seen { surface, planes, whole, roots, allowed: allowed(tolerance, part.error) };
                 if !seen.holds(&root, limits, basis)? {
                     if !found(root, !pending.is_empty(), work)? {
@@ -216,12 +229,6 @@ enum Step<S> {
     Done(Option<Place<S>>),
 }
 
-/// How far the points of a settled region pass the ray at most, by the measure of [`Local::residual`].
-#[inline(always)]
-fn allowed<S: Scalar>(tolerance: S, error: S) -> S {
-    tolerance * S::TWO + error * S::from_u32(16) + noise()
-}
-
 /// Of a region whose points all pass the ray within the tolerance or the error of their net, the one that the ray meets
 /// first, in its interval if one is; from its corners and its middle, each brought nearer by Newton's method. `None` if
 /// the ray passes all of them by, as it may at a phantom hit.
@@ -238,58 +245,10 @@ fn nearest<P: Point>(
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Option<Place<P::Scalar>>, Limit> {
     let [[u0, u1], [v0, v1]] = part.region.sides;
-    let allowed = allowed(tolerance, part.error);
-    // In order of worth: whether it lies before the interval, or is held by no more than its net's error; and its depth.
-    let mut least = None;
-    let mut best = None;
-    for at in [part.region.middle(), [u0, v0], [u0, v1], [u1, v0], [u1, v1]] {
-        let place = polished(surface, whole, &part.region, at, basis)?;
-        let residual = place.local.residual();
-        if !(residual <= allowed) {
-            continue;
-        }
-        let depth = planes.depth_on(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
-        let faults = [planes.is_before_interval(depth), residual > tolerance * P::Scalar::TWO + noise()];
-        if least.is_none_or(|least| (faults, depth) < least) {
-            (least, best) = (Some((faults, depth)), Some(place));
-        }
-    }
-    Ok(best)
+    let mut from = |at| polished(surface, whole, &part.region, at, &mut *basis);
+    let places = [from(part.region.middle())?, from([u0, v0])?, from([u0, v1])?, from([u1, v0])?, from([u1, v1])?];
+    first_met(surface, planes, places, [tolerance, part.error], basis)
 }
-
-/// The place that a few of Newton's steps lead to from a point of a region, as long as each brings the ray nearer: no farther
-/// from the region than it is wide.
-fn polished<P: Point>(
-    surface: &Surface<'_, P>,
-    whole: &[P::Flat],
-    region: &Region<P::Scalar>,
-    at: [P::Scalar; 2],
-    basis: &mut BasisView<'_, P::Scalar>,
-) -> Result<Place<P::Scalar>, Limit> {
-    let mut look = |at| Ok(Place { at, local: Local::at(at, surface.net.degrees(), whole, basis)? });
-    let around = region.sides.map(|[low, high]| {
-        let width = high - low;
-        [P::Scalar::ZERO.greater(low - width), P::Scalar::ONE.lesser(high + width)]
-    });
-    let mut place = look(at)?;
-    for _ in 0..POLISHING {
-        // Along a line that the ray follows, rounding alone would choose where to go.
-        let Some([du, dv]) = place.local.step().filter(|_| !place.local.may_be_singular()) else {
-            break;
-        };
-        let [u, v] = place.at;
-        let [[u0, u1], [v0, v1]] = around;
-        let next = look([(u + du).clamped(u0, u1), (v + dv).clamped(v0, v1)])?;
-        if !(next.local.residual() < place.local.residual()) {
-            break;
-        }
-        place = next;
-    }
-    Ok(place)
-}
-
-/// Newton's steps from a point of a settled region: from within the error of a net of 15 × 15 in `f32`, two are mostly enough.
-const POLISHING: u32 = 3;
 
 #[cfg(test)]
 mod tests;

@@ -110,7 +110,7 @@ pub(crate) fn single<P: Point>(
 ) -> Result<Single<P::Scalar>, Limit> {
     Ok(match contract(surface, whole, region, limits, basis, work)? {
         Contraction::Done(Some(place)) => {
-            let root = place.root(&surface.net, planes, limits, basis)?;
+            let root = place.root(&surface.net, whole, planes, limits, basis)?;
             Single::Root(root, place.local)
         }
         Contraction::Done(None) => Single::Nothing,

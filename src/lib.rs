@@ -93,6 +93,7 @@ mod contract;
 pub mod region;
 
 pub mod clip;
+mod graze;
 mod part;
 mod roots;
 

@@ -165,7 +165,8 @@ impl<S: Scalar> Limits<S> {
             full_searches: extent.surfaces,
             clip_steps: clips,
             bisections: if extent.clipped { self.bisections.min(clips) } else { 0 },
-            bisection_cases: if extent.clipped { extent.surfaces } else { 0 },
+            // Of each patch that is handed over one more.
+            bisection_cases: if extent.clipped { extent.surfaces.saturating_add(patches) } else { 0 },
             refused_as_critical: extent.surfaces,
             refused_by_list: extent.surfaces,
             refused_by_neighbour: extent.surfaces,
@@ -232,8 +233,8 @@ counters! {
     clip_steps,
     /// Bisections of a parameter's interval.
     bisections,
-    /// Surfaces of which a domain was bisected: the paper's bisection case. Other surfaces that the ray met are the
-    /// straight-forward case.
+    /// Surfaces, or patches that were handed over, of which a domain was bisected: the paper's bisection case. Others that
+    /// the ray met are the straight-forward case.
     bisection_cases,
     /// Coherent clipping: points not verified because the ray is critical, by eq. (1), in the patch that holds them, or
     /// because no listed patch holds them.

@@ -70,11 +70,24 @@ impl<S: Scalar> Local<S> {
         Ok(Local { at, f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight: jet.point.weight() })
     }
 
+    /// How far the point is from the ray: |f| + |g|.
+    #[inline(always)]
+    pub(crate) fn distance(&self) -> S {
+        self.residual() / self.weight
+    }
+
     /// |f| + |g|, times the weight.
     #[inline(always)]
     pub(crate) fn residual(&self) -> S {
         let [f, g] = self.f_g;
         f.abs() + g.abs()
+    }
+
+    /// The point's distance from the ray in the direction of a unit vector of the two planes' system, and its derivatives by u
+    /// and v; all times the weight.
+    pub(crate) fn seen_along(&self, [x, y]: [S; 2]) -> (S, [S; 2]) {
+        let along = |[f, g]: [S; 2]| f * x + g * y;
+        (along(self.f_g), [along(self.du), along(self.dv)])
     }
 
     /// Whether the ray is tangent, from the derivatives of the depth; see [`Root::grazing`]. A pole has no tangent plane,
@@ -86,6 +99,15 @@ impl<S: Scalar> Local<S> {
         let normal = [gu * depth_v - depth_u * gv, depth_u * fv - fu * depth_v, self.determinant];
         let [a, b, c] = normal.map(S::abs);
         c < sine(tolerance) * (a + b + c)
+    }
+
+    /// Whether the ray is seen to be no tangent from f and g alone, which is true of most roots: the derivatives of depth are at
+    /// most the degrees times twice the coordinates' `reach`.
+    #[inline(always)]
+    fn is_steep(&self, degrees: Degrees, reach: S, tolerance: S) -> bool {
+        let [deepest_u, deepest_v] = [degrees.u, degrees.v].map(|n| S::from_u32(2 * u32::from(n)) * reach);
+        let ([fu, gu], [fv, gv], c) = (self.du, self.dv, self.determinant.abs());
+        c >= sine(tolerance) * ((fu.abs() + gu.abs()) * deepest_v + (fv.abs() + gv.abs()) * deepest_u + c)
     }
 
     /// The step to where both distances would be 0; `None` if the Jacobian is singular to working precision.
@@ -100,12 +122,12 @@ impl<S: Scalar> Local<S> {
     }
 
     /// Whether rounding alone may make the determinant what it is: each of its four factors is off by some roundings of
-    /// coordinates below 2, not of its own size.
+    /// coordinates below 2 times the weight, not of its own size.
     #[inline(always)]
     pub(crate) fn may_be_singular(&self) -> bool {
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let lengths = fu.abs() + gu.abs() + (fv.abs() + gv.abs());
-        !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * lengths)
+        !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * lengths * self.weight)
     }
 
     /// How fast the root moves, in u and in v, if the ray's slopes change as fast as each of these: f and g at a fixed place on
@@ -189,38 +211,89 @@ pub(crate) struct Place<S> {
 }
 
 impl<S: Scalar> Place<S> {
-    /// The root there.
+    /// The root there; `whole` is the surface's projected net.
     #[inline(always)]
     pub(crate) fn root<P: Point<Scalar = S>>(
         &self,
         net: &Net<'_, P>,
+        whole: &[P::Flat],
         planes: &Planes<S>,
         limits: &Limits<S>,
         basis: &mut BasisView<'_, S>,
     ) -> Result<Root<S>, Limit> {
+        let steep = self.local.is_steep(net.degrees(), planes.reach() * weighted::<P>(), limits.tolerance);
+        if !steep {
+            return self.shallow_root(net, whole, planes, limits, basis);
+        }
         let depth = planes.depth_on(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
-        // Between two points of the frame f and g differ by 4 times its reach at most and depth by 2, and derivatives by a degree times that:
-        // a bound of the normal's three parts together, which tells most roots from grazing ones.
-        let longest = S::from_u32((64 * net.degree_u() * net.degree_v()) as u32) * (planes.reach() * planes.reach());
-        let steep = self.local.determinant.abs() >= sine(limits.tolerance) * longest;
-        let grazing = !steep && self.is_tangent(net, planes, limits, basis)?;
         let [u, v] = self.at;
-        Ok(Root { u, v, depth, grazing })
+        Ok(Root { u, v, depth, grazing: false })
     }
 
+    /// The same where the ray may be tangent, or the surface is of very uneven speed.
     #[cold]
     #[inline(never)]
-    fn is_tangent<P: Point<Scalar = S>>(
+    fn shallow_root<P: Point<Scalar = S>>(
         &self,
         net: &Net<'_, P>,
+        whole: &[P::Flat],
         planes: &Planes<S>,
         limits: &Limits<S>,
         basis: &mut BasisView<'_, S>,
-    ) -> Result<bool, Limit> {
+    ) -> Result<Root<S>, Limit> {
         let along = planes.depth_derivatives(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
-        Ok(self.local.is_tangent(along, limits.tolerance))
+        let grazing = self.local.is_tangent(along, limits.tolerance);
+        let at = self.refined(net, whole, basis)?;
+        let mut depth = planes.depth_on(net, at, basis).map_err(|Full| Limit::Scratch)?;
+        if !grazing {
+            // Where the least step of u or v that the number type holds is a way in space, the depth is known better than they
+            // can be said.
+            let local = Local::at(at, net.degrees(), whole, basis)?;
+            let unsaid = |step: &[S; 2]| step.iter().all(|c| c.abs() <= S::EPSILON) && !local.may_be_singular();
+            if let Some([du, dv]) = local.step().filter(unsaid) {
+                depth = depth + (along[0] * du + along[1] * dv) / local.weight;
+            }
+        }
+        let [u, v] = at;
+        Ok(Root { u, v, depth, grazing })
+    }
+
+    /// Where a few more steps lead, as long as each brings the ray nearer. What the tolerance leaves across the ray is, along it,
+    /// more by the inverse of the angle, or for cubic contact a third of the digits.
+    #[cold]
+    #[inline(never)]
+    fn refined<P: Point<Scalar = S>>(
+        &self,
+        net: &Net<'_, P>,
+        whole: &[P::Flat],
+        basis: &mut BasisView<'_, S>,
+    ) -> Result<[S; 2], Limit> {
+        let mut at = self.at;
+        let mut local = Local::at(at, net.degrees(), whole, basis)?;
+        for _ in 0..REFINING {
+            let Some(step) = local.step().filter(|_| !local.may_be_singular()) else {
+                break;
+            };
+            let next = core::array::from_fn(|k| (at[k] + step[k]).clamped(S::ZERO, S::ONE));
+            let there = Local::at(next, net.degrees(), whole, basis)?;
+            if !(there.residual() < local.residual()) {
+                break;
+            }
+            (at, local) = (next, there);
+        }
+        Ok(at)
     }
 }
+
+/// By how much more than a plain surface's the derivatives of a rational one may be: both its parts, numerator and weight, are
+/// bounded apart.
+#[inline(always)]
+fn weighted<P: Point>() -> P::Scalar {
+    if P::RATIONAL { P::Scalar::from_u32(4) } else { P::Scalar::ONE }
+}
+
+/// Steps that a shallow root is worth: from the tolerance of `f32` three reach its rounding.
+const REFINING: u32 = 3;
 
 /// The sine below which an angle between ray and surface makes a hit grazing.
 #[inline(always)]
@@ -263,7 +336,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     /// The iteration may leave the patch that gave the start: it works on the whole surface.
     pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         match self.iterate(start, work)? {
-            Some(place) => place.root(&self.surface.net, self.planes, self.limits, self.basis).map(Some),
+            Some(place) => self.root(&place).map(Some),
             None => Ok(None),
         }
     }
@@ -277,11 +350,17 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     ) -> Result<Option<Followed<P::Scalar>>, Limit> {
         match self.iterate(start, work)? {
             Some(place) => {
-                let root = place.root(&self.surface.net, self.planes, self.limits, self.basis)?;
+                let root = self.root(&place)?;
                 Ok(Some((root, place.local)))
             }
             None => Ok(None),
         }
+    }
+
+    #[inline(always)]
+    fn root(&mut self, place: &Place<P::Scalar>) -> Result<Root<P::Scalar>, Limit> {
+        let flat = self.flat.get(..self.surface.net.points().len()).ok_or(Limit::Scratch)?;
+        place.root(&self.surface.net, flat, self.planes, self.limits, self.basis)
     }
 
     /// The surface at (u, v) to first order.

@@ -2,6 +2,7 @@
 
 use crate::bernstein::{Degrees, Direction, Full};
 use crate::casteljau;
+use crate::clip::Noise;
 use crate::point::Flat;
 use crate::region::Region;
 use crate::scalar::Scalar;
@@ -12,9 +13,10 @@ pub(crate) struct Part<'a, F: Flat> {
     pub(crate) region: Region<F::Scalar>,
     pub(crate) degrees: Degrees,
     pub(crate) net: &'a mut [F],
-    /// A bound of the coefficients' |f| and |g|.
+    /// A bound of the points' |f| and |g|.
     reach: F::Scalar,
-    /// By how much the coefficients may be off.
+    /// By how much the points may be off: the coefficients by that times their weights, of which de Casteljau's algorithm makes
+    /// means as it does of them. A bound for the heaviest would drown what is light.
     pub(crate) error: F::Scalar,
     /// By how much those of the whole may be.
     projected: F::Scalar,
@@ -38,6 +40,13 @@ impl<'a, F: Flat> Part<'a, F> {
         let net = room.get_mut(..whole.len()).ok_or(Full)?;
         net.iter_mut().zip(whole).for_each(|(slot, &point)| *slot = point);
         Ok(Some(Part { region: Region::WHOLE, degrees, net, reach, error, projected: error }))
+    }
+
+    /// What to allow for when its coefficients are compared, all of them alike, with this much of tolerance for its points.
+    #[inline(always)]
+    pub(crate) fn noise(&self, tolerance: F::Scalar) -> Noise<F::Scalar> {
+        let [lightest, heaviest] = weights(self.net);
+        Noise { error: self.error * heaviest, tolerance: tolerance * lightest }
     }
 
     /// To a region of the surface: from what it is, if that holds it, else from the whole again.
@@ -101,9 +110,25 @@ impl<'a, F: Flat> Part<'a, F> {
     }
 }
 
-/// The largest |f| or |g| of a projected net.
+/// The least and the largest weight of a net.
+#[inline(always)]
+fn weights<F: Flat>(net: &[F]) -> [F::Scalar; 2] {
+    if !F::RATIONAL {
+        return [F::Scalar::ONE; 2];
+    }
+    let none = [F::Scalar::INFINITY, F::Scalar::ZERO];
+    net.iter().fold(none, |[low, high], point| [low.lesser(point.weight()), high.greater(point.weight())])
+}
+
+/// The largest |f| or |g| of a projected net's points.
 #[inline(always)]
 fn reach<F: Flat>(net: &[F]) -> F::Scalar {
+    if F::RATIONAL {
+        return net.iter().fold(F::Scalar::ZERO, |most, point| {
+            let [f, g] = point.f_g();
+            most.greater(f.abs().greater(g.abs()) / point.weight())
+        });
+    }
     // Two points at a time, so that one comparison need not wait for another.
     let mut most = [F::Scalar::ZERO; 4];
     let mut pairs = net.chunks_exact(2);
@@ -120,9 +145,10 @@ fn reach<F: Flat>(net: &[F]) -> F::Scalar {
     most[0].greater(most[1]).greater(most[2].greater(most[3]))
 }
 
-/// The largest |f| or |g|, if both take both signs, or nearly; if not, no point of the surface is on the ray.
+/// The largest |f| or |g| of a net's points, if both take both signs, or nearly; if not, no point of the surface is on the ray.
 #[inline(always)]
 fn straddling<F: Flat>(net: &[F], error: F::Scalar) -> Option<F::Scalar> {
+    let error = error * weights(net)[1];
     let (mut low, mut high) = ([F::Scalar::INFINITY; 2], [F::Scalar::LEAST; 2]);
     for point in net {
         let f_g = point.f_g();
@@ -130,5 +156,8 @@ fn straddling<F: Flat>(net: &[F], error: F::Scalar) -> Option<F::Scalar> {
         high = [high[0].greater(f_g[0]), high[1].greater(f_g[1])];
     }
     let straddles = low[0] <= error && low[1] <= error && high[0] >= -error && high[1] >= -error;
+    if F::RATIONAL {
+        return straddles.then(|| reach(net));
+    }
     straddles.then(|| high[0].greater(high[1]).greater(-low[0]).greater(-low[1]))
 }

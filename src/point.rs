@@ -59,6 +59,8 @@ impl<S: Scalar> Weighted<S> {
 pub trait Flat: Linear<Self::Scalar> + core::fmt::Debug + PartialEq + Send + Sync + 'static {
     /// The type of the coordinates.
     type Scalar: Scalar;
+    /// Whether there are weights.
+    const RATIONAL: bool;
     /// From f and g, both times the weight, and the weight.
     fn new(f: Self::Scalar, g: Self::Scalar, weight: Self::Scalar) -> Self;
     /// f and g, times the weight.
@@ -69,6 +71,7 @@ pub trait Flat: Linear<Self::Scalar> + core::fmt::Debug + PartialEq + Send + Syn
 
 impl<S: Scalar> Flat for Tuple<S, 2> {
     type Scalar = S;
+    const RATIONAL: bool = false;
     #[inline(always)]
     fn new(f: S, g: S, _weight: S) -> Self {
         Tuple([f, g])
@@ -85,6 +88,7 @@ impl<S: Scalar> Flat for Tuple<S, 2> {
 
 impl<S: Scalar> Flat for Tuple<S, 3> {
     type Scalar = S;
+    const RATIONAL: bool = true;
     #[inline(always)]
     fn new(f: S, g: S, weight: S) -> Self {
         Tuple([f, g, weight])

@@ -18,7 +18,7 @@ pub(crate) struct Seen<'a, 'm, P: Point> {
     /// The surface's projected net.
     pub(crate) whole: &'a [P::Flat],
     pub(crate) roots: &'a [Root<P::Scalar>],
-    /// How far the surface may pass the ray and count as meeting it, by the measure of [`Local::residual`].
+    /// How far the surface may pass the ray and count as meeting it, by the measure of [`Local::distance`].
     pub(crate) allowed: P::Scalar,
 }
 
@@ -69,7 +69,7 @@ impl<P: Point> Seen<'_, '_, P> {
         for share in [P::Scalar::from_f64(0.381), P::Scalar::HALF, P::Scalar::from_f64(0.803)] {
             let at = [a.u + (b.u - a.u) * share, a.v + (b.v - a.v) * share];
             let degrees = self.surface.net.degrees();
-            if !(Local::at(at, degrees, self.whole, basis)?.residual() <= self.allowed) {
+            if !(Local::at(at, degrees, self.whole, basis)?.distance() <= self.allowed) {
                 return Ok(false);
             }
         }

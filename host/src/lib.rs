@@ -17,5 +17,6 @@ pub mod scene;
 pub mod settings;
 pub mod shade;
 pub mod stats;
+pub mod stress;
 pub mod study;
 pub mod viewed;

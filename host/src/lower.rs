@@ -6,7 +6,7 @@
 use patchray::bernstein::MAX_DEGREE;
 use patchray::frame::{Aabb, exact_origin};
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
-use patchray::limits::Extent;
+use patchray::limits::{Extent, Work};
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::{Plain, Point, Weighted};
 use patchray::scalar::Scalar;
@@ -362,6 +362,11 @@ impl<P: Point> Lowered<P> {
             walks: if original { 0 } else { 2 },
             clipped: !newtons || acceptance == Acceptance::Proved,
         }
+    }
+
+    /// The most work that a ray can take in a scene of this extent under the limits of `settings`.
+    pub fn worst_case(&self, extent: &Extent, settings: &Settings) -> Work {
+        settings.limits::<P::Scalar>().worst_case(extent)
     }
 
     /// What was built.

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use patchray::limits::Work;
+
 use crate::lower::{LowerError, Stages};
 use crate::memory::Bytes;
 use crate::prepared::Prepared;
@@ -110,6 +112,15 @@ impl Viewed {
     /// The settings that it was made for.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// The most work that one of the picture's rays can take.
+    pub fn worst_case(&self) -> Work {
+        if self.view {
+            self.prepared.worst_case_in_view(&self.settings)
+        } else {
+            self.prepared.worst_case(&self.settings)
+        }
     }
 
     /// The tracer of the picture's scan lines, and what was used for it.

@@ -3,12 +3,13 @@
 
 use crate::ask::{Answers, Most, Query, Room, ask};
 use crate::common::{Built, Kind, add, cross, is_rational, norm};
-use crate::shapes::{askew, mapped, product, surface};
+use crate::shapes::{askew, mapped};
 use patchray::limits::Limits;
 use patchray::point::{Plain, Weighted};
 use patchray::scalar::Scalar;
 use patchray_host::scene::model::{Model, ModelSurface};
-use patchray_host::scene::shapes::{Random, bumpy, cylinder, elevate, paraboloid, parallelogram, single, sphere};
+use patchray_host::scene::shapes::roots::product;
+use patchray_host::scene::shapes::{Random, bumpy, cylinder, elevate, net, paraboloid, parallelogram, single, sphere};
 
 /// All rays on one model; the answers, and the most work.
 fn run<P: Kind>(name: &str, model: &Model, queries: &[Query], clip_steps: u32) -> Vec<Answers<P::Scalar>> {
@@ -238,7 +239,7 @@ fn contact_of_higher_order() {
     {
         for k in 2..=7_usize {
             let c = product(&vec![0.5; k]);
-            let model = single(surface(k, 2, |i, j| [i as f64 / k as f64 - 0.5, j as f64 / 2.0, c[i]]));
+            let model = single(net(k, 2, |i, j| [i as f64 / k as f64 - 0.5, j as f64 / 2.0, c[i]]));
             let mut queries = vec![];
             for exponent in 3..=14 {
                 for side in [-1.0, 0.0, 1.0] {
@@ -362,10 +363,10 @@ fn cusps_points_and_lines() {
     {
         // (x², x³) along z, x from −1 to 1: Bernstein coefficients by hand.
         let (square, cube) = ([1.0, -1.0 / 3.0, -1.0 / 3.0, 1.0], [-1.0, 1.0, -1.0, 1.0]);
-        let cusp = single(surface(3, 1, |i, j| [square[i], cube[i], j as f64]));
-        let point = |n, m| single(surface(n, m, |_, _| [0.5, 0.25, -1.0]));
+        let cusp = single(net(3, 1, |i, j| [square[i], cube[i], j as f64]));
+        let point = |n, m| single(net(n, m, |_, _| [0.5, 0.25, -1.0]));
         let straight = |n: usize, m: usize| {
-            single(surface(n, m, |i, j| {
+            single(net(n, m, |i, j| {
                 let s = (i as f64 - 0.5 * j as f64) / (n + m) as f64;
                 [0.5 + s, 0.25 - 0.5 * s, -1.0 + 0.25 * s]
             }))

@@ -2,13 +2,13 @@
 
 use crate::ask::{MANY, Query, Room, ask, limit};
 use crate::common::{Built, Kind, Prepared, direction, norm};
-use crate::shapes::{grid_of_roots, spread};
 use patchray::limits::{GaveUp, Limit, Limits, Work};
 use patchray::method::{Scratch, clipping, newton};
 use patchray::point::Plain;
 use patchray::ray::Hit;
 use patchray::scalar::Scalar;
 use patchray_host::scene::model::Model;
+use patchray_host::scene::shapes::roots::{grid_of_roots, spread};
 use patchray_host::scene::shapes::{Random, bumpy, single};
 use patchray_host::scene::teapot;
 

@@ -3,13 +3,14 @@
 use crate::ask::{Query, Room, ask};
 use crate::common::{Kind, Prepared, add, dot, is_rational};
 use crate::judge::{Allowed, Tally};
-use crate::shapes::{askew, folded, grid_of_roots, mapped, spread};
+use crate::shapes::{askew, mapped};
 use crate::{coherence, common::Built};
 use patchray::limits::Limits;
 use patchray::point::{Plain, Weighted};
 use patchray::scalar::Scalar;
 use patchray_host::oracle::Oracle;
 use patchray_host::scene::model::{Model, ModelSurface};
+use patchray_host::scene::shapes::roots::{folded, grid_of_roots, spread};
 use patchray_host::scene::shapes::{Random, single, torus};
 
 /// All hits of one ray, against t, u and v known beforehand, in order of t; u and v within `tolerance`.

@@ -6,6 +6,7 @@ pub mod load;
 pub mod query;
 pub mod render;
 pub mod report;
+pub mod stress;
 pub mod study;
 pub mod tables;
 
@@ -60,15 +61,23 @@ pub enum Failure {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Output(#[from] OutputError),
+    /// The answer is no: bounds were missed, which the output names.
+    #[error("{missed} bounds are missed")]
+    #[diagnostic(help("the output names them, below the table"))]
+    No {
+        /// How many.
+        missed: usize,
+    },
     /// Something that should not happen.
     #[error("internal error: {0}")]
     Internal(String),
 }
 
 impl Failure {
-    /// The exit code: 2 usage, 3 input refused, 4 capacity, 5 internal or I/O; 0 if whoever read the output went away.
+    /// The exit code: 1 the answer is no, 2 usage, 3 input refused, 4 capacity, 5 internal or I/O; 0 if whoever read the output went away.
     pub fn code(&self) -> u8 {
         match self {
+            Failure::No { .. } => 1,
             Failure::Usage { .. } => 2,
             Failure::Input(_) | Failure::Refused { .. } => 3,
             Failure::Lower(LowerError::Surface { .. } | LowerError::Vanishes { .. } | LowerError::NoView { .. }) => 3,

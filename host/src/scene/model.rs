@@ -33,6 +33,28 @@ impl ModelSurface {
     }
 }
 
+impl ModelSurface {
+    /// The point at (u, v), each from 0 to 1, by de Casteljau's scheme in `f64` on the control points of the file.
+    pub fn point(&self, u: f64, v: f64) -> [f64; 3] {
+        let weighted = |&[x, y, z, w]: &[f64; 4]| [x * w, y * w, z * w, w];
+        let blend = |points: &mut Vec<[f64; 4]>, t: f64| {
+            // Ends: each round leaves one point less.
+            while points.len() > 1 {
+                for k in 0..points.len() - 1 {
+                    let (low, high) = (points[k], points[k + 1]);
+                    points[k] = [0, 1, 2, 3].map(|axis| (1.0 - t) * low[axis] + t * high[axis]);
+                }
+                points.pop();
+            }
+            points.first().copied().unwrap_or_default()
+        };
+        let rows = self.points.chunks(self.degree_v + 1);
+        let mut column: Vec<[f64; 4]> = rows.map(|row| blend(&mut row.iter().map(weighted).collect(), v)).collect();
+        let [x, y, z, w] = blend(&mut column, u);
+        [x / w, y / w, z / w]
+    }
+}
+
 /// The surfaces of one file, in its order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {

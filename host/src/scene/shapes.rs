@@ -6,6 +6,8 @@
 use super::model::{Model, ModelSurface};
 use super::revolution::{Arcs, Curve, revolve};
 
+pub mod roots;
+
 /// Pseudo-random numbers: SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number
 /// generators", 2014). The same seed gives the same numbers everywhere.
 #[derive(Clone, Debug)]
@@ -41,6 +43,12 @@ fn polynomial(degree_u: usize, degree_v: usize, points: Vec<[f64; 3]>) -> ModelS
         points: points.into_iter().map(|[x, y, z]| [x, y, z, 1.0]).collect(),
         knots: None,
     }
+}
+
+/// The polynomial surface of control points `at(i, j)`.
+pub fn net(degree_u: usize, degree_v: usize, at: impl Fn(usize, usize) -> [f64; 3]) -> ModelSurface {
+    let places = (0..=degree_u).flat_map(|i| (0..=degree_v).map(move |j| (i, j)));
+    polynomial(degree_u, degree_v, places.map(|(i, j)| at(i, j)).collect())
 }
 
 /// A model of one surface.

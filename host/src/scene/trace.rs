@@ -98,6 +98,16 @@ pub enum Acceptance {
     Proved,
 }
 
+impl Acceptance {
+    /// Its name, as files and the command line write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Acceptance::Paper => "paper",
+            Acceptance::Proved => "proved",
+        }
+    }
+}
+
 /// The most Newton starts per patch: the parallelogram, the entrance and the exit are all there are.
 pub const MAX_STARTS: u32 = 3;
 

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::truth::RayTruth;
 use crate::judge::{Agreement, Allowance};
 use crate::report::times::quantile;
-use crate::scanline::{Found, Outcome};
-use crate::scene::model::{Model, ModelSurface};
+use crate::scanline::Outcome;
+use crate::scene::model::Model;
 use crate::scene::rays::RayLine;
 
 /// What an answer is, by the oracle.
@@ -104,32 +104,12 @@ impl Judge<'_> {
             _ => Kind::OtherSheet,
         };
         let error = truth.closest.map(|t| (found.t - t).abs() * speed / self.diagonal);
-        let point = self.model.surfaces.get(found.surface).map(|surface| point_on(surface, found));
+        let point = self.model.surfaces.get(found.surface).map(|surface| surface.point(found.u, found.v));
         let residual = point.map(|point| {
             length([0, 1, 2].map(|k| point[k] - (ray.origin[k] + found.t * ray.direction[k]))) / self.diagonal
         });
         Judged { kind, error, residual }
     }
-}
-
-/// The point of the surface at the (u, v) of a hit, by de Casteljau's scheme in `f64` on the control points of the file.
-fn point_on(surface: &ModelSurface, found: &Found) -> [f64; 3] {
-    let weighted = |&[x, y, z, w]: &[f64; 4]| [x * w, y * w, z * w, w];
-    let blend = |points: &mut Vec<[f64; 4]>, t: f64| {
-        // Ends: each round leaves one point less.
-        while points.len() > 1 {
-            for k in 0..points.len() - 1 {
-                let (low, high) = (points[k], points[k + 1]);
-                points[k] = [0, 1, 2, 3].map(|axis| (1.0 - t) * low[axis] + t * high[axis]);
-            }
-            points.pop();
-        }
-        points.first().copied().unwrap_or_default()
-    };
-    let rows = surface.points.chunks(surface.degree_v + 1);
-    let mut column: Vec<[f64; 4]> = rows.map(|row| blend(&mut row.iter().map(weighted).collect(), found.v)).collect();
-    let [x, y, z, w] = blend(&mut column, found.u);
-    [x / w, y / w, z / w]
 }
 
 /// How errors, or residuals, are spread. Shares of the model's diagonal.
@@ -183,6 +163,8 @@ impl Spread {
 mod tests {
     use super::*;
     use crate::judge::{Truth, allowance};
+    use crate::scanline::Found;
+    use crate::scene::model::ModelSurface;
     use crate::scene::trace::Precision;
 
     /// The sheet z = u v over the unit square, with one heavy corner.

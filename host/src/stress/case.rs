@@ -1,0 +1,153 @@
+//! What a family is made of: cases, each a model with rays.
+
+use glam::DVec3;
+
+use crate::judge::Truth;
+use crate::scene::camera::View;
+use crate::scene::model::{Model, ModelSurface};
+use crate::scene::rays::RayLine;
+use crate::scene::shapes::Random;
+use crate::scene::trace::Precision;
+
+/// Cases that are hard in the same way.
+#[derive(Clone, Copy, Debug)]
+pub struct Family {
+    /// Its name, in tables and on the command line.
+    pub name: &'static str,
+    /// In what way it is hard.
+    pub what: &'static str,
+    /// Whether its rays graze on purpose: the share that cannot be judged then has no bound.
+    pub grazing: bool,
+    /// Makes the cases.
+    pub cases: fn(&mut Draw) -> Vec<Case>,
+}
+
+/// A model with rays.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The surfaces.
+    pub model: Model,
+    /// The rays.
+    pub shot: Shot,
+    /// The truth by a closed form, in place of the oracle's.
+    pub exact: Option<fn(&RayLine) -> Truth>,
+}
+
+/// How a case is traced.
+#[derive(Clone, Debug)]
+pub enum Shot {
+    /// As rays of no view, along scan lines of their own: by the methods for any rays.
+    Rays(Vec<RayLine>),
+    /// As a picture: by all methods.
+    Picture(View),
+}
+
+impl Case {
+    /// Rays of no view, judged by the oracle.
+    pub fn of_rays(model: Model, rays: Vec<RayLine>) -> Self {
+        Case { model, shot: Shot::Rays(rays), exact: None }
+    }
+}
+
+/// What cases are drawn from.
+#[derive(Clone, Debug)]
+pub struct Draw {
+    /// The numbers.
+    pub random: Random,
+    /// About how many rays a case is to have.
+    pub rays: usize,
+    /// What model and rays will be rounded to.
+    pub precision: Precision,
+}
+
+impl Draw {
+    /// The exponent of the smallest step, as a power of ten, that is asked of the precision: 14 in `f64`, 5 in `f32`. A hundredth,
+    /// or half, of what can be judged.
+    pub fn digits(&self) -> f64 {
+        match self.precision {
+            Precision::F64 => 14.0,
+            Precision::F32 => 5.0,
+        }
+    }
+
+    /// A number of either sign, from 0.1 down to the smallest step, its logarithm evenly spread.
+    pub fn ladder(&mut self) -> f64 {
+        let size = 10.0_f64.powf(-self.random.within(1.0, self.digits()));
+        if self.random.within(0.0, 1.0) < 0.5 { -size } else { size }
+    }
+
+    /// A unit vector.
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            // Ends: a point of the cube lies in this shell with probability above 0.4.
+            let p = DVec3::from_array(self.random.point(1.0));
+            if (0.3..=1.0).contains(&p.length()) {
+                return p.normalize();
+            }
+        }
+    }
+
+    /// A ray to `target` from `distance` away in any direction.
+    pub fn ray_to(&mut self, target: DVec3, distance: f64) -> RayLine {
+        let direction = self.direction();
+        ray(target - direction * distance, direction)
+    }
+
+    /// Rays from outside to points in the box of the model's control points: half of them met somewhere, by experience.
+    pub fn rays_at(&mut self, model: &Model) -> Vec<RayLine> {
+        let Some(bounds) = model.control_box() else { return Vec::new() };
+        let diagonal = bounds.diagonal();
+        (0..self.rays)
+            .map(|_| {
+                let target = DVec3::from_array([0, 1, 2].map(|k| self.random.within(bounds.min[k], bounds.max[k])));
+                self.ray_to(target, 1.5 * diagonal)
+            })
+            .collect()
+    }
+
+    /// Rays from outside to points of the model's surfaces.
+    pub fn rays_onto(&mut self, model: &Model) -> Vec<RayLine> {
+        let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());
+        (0..self.rays)
+            .map(|_| {
+                let surface = self.pick(&model.surfaces);
+                let [u, v] = [0; 2].map(|_| self.random.within(0.0, 1.0));
+                let target = point(surface, u, v);
+                self.ray_to(target, 1.5 * diagonal)
+            })
+            .collect()
+    }
+
+    /// One of a list, which must not be empty.
+    pub fn pick<'a, T>(&mut self, list: &'a [T]) -> &'a T {
+        let place = self.random.within(0.0, list.len() as f64) as usize;
+        &list[place.min(list.len() - 1)]
+    }
+}
+
+/// A ray ahead of its origin.
+pub fn ray(origin: DVec3, direction: DVec3) -> RayLine {
+    RayLine {
+        origin: origin.to_array(),
+        direction: direction.to_array(),
+        t_min: 0.0,
+        t_max: f64::INFINITY,
+        scan_line: 0,
+        valid: true,
+    }
+}
+
+/// The point of a surface at (u, v), to rounding: for aiming.
+pub fn point(surface: &ModelSurface, u: f64, v: f64) -> DVec3 {
+    DVec3::from_array(surface.point(u, v))
+}
+
+/// The model with every control point moved by `map`.
+pub fn mapped(model: &Model, map: impl Fn(DVec3) -> DVec3) -> Model {
+    let mut model = model.clone();
+    for point in model.surfaces.iter_mut().flat_map(|surface| &mut surface.points) {
+        let [x, y, z] = map(DVec3::new(point[0], point[1], point[2])).to_array();
+        *point = [x, y, z, point[3]];
+    }
+    model
+}
