@@ -11,7 +11,7 @@
 
 use crate::bernstein::{BasisView, Full};
 use crate::clip::{Clip, clip};
-use crate::contract::{Contraction, Single, contract, single};
+use crate::contract::{Contraction, Single, contract, is_provable, single};
 use crate::graze::{Across, across, allowed, first_met, on_line, polished};
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::newton::{Local, Place, Root};
@@ -148,9 +148,13 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                 Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
                     part.narrow(direction, [from, to]);
                     settled = false;
-                    match contract(surface, whole, part.region, limits, basis, work)? {
-                        Contraction::Open => Step::On,
-                        Contraction::Done(place) => Step::Done(place),
+                    if !bisected || may_be_single(surface, &part) {
+                        match contract(surface, whole, part.region, limits, basis, work)? {
+                            Contraction::Open => Step::On,
+                            Contraction::Done(place) => Step::Done(place),
+                        }
+                    } else {
+                        Step::On
                     }
                 }
                 // A width that cannot be halved is as settled as one that need not be. One that moves nothing, as along a
@@ -209,12 +213,42 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                 }
             }
             settled = false;
-            match order.pop(pending) {
-                Some(region) => part.become_region(whole, region),
-                None => return Ok(()),
+            // Ends: each turn takes one of the regions that wait.
+            loop {
+                match order.pop(pending) {
+                    Some(region) => part.become_region(whole, region),
+                    None => return Ok(()),
+                }
+                // Most halves of a small region, which only a fold keeps from being proved, lie apart from the ray across it; of
+                // larger ones a clip is the better question.
+                let folded = is_provable(surface, part.region.widths());
+                if !folded || !matches!(across(part.degrees, part.net, &part.noise(tolerance)), Across::Apart) {
+                    break;
+                }
             }
         }
     }
+}
+
+/// Whether a region may be proved to hold one root at most, by the mean Jacobian over it, which the corners of its net tell
+/// without evaluating the surface: if not by four times what the proof allows for, asking would be in vain.
+#[inline(always)]
+fn may_be_single<P: Point>(surface: &Surface<'_, P>, part: &Part<'_, P::Flat>) -> bool {
+    let widths = part.region.widths();
+    // That is not asked for anyhow.
+    if !is_provable(surface, widths) {
+        return false;
+    }
+    let [[fu, gu], [fv, gv]] = part.chords();
+    let halves = widths.map(|width| width * P::Scalar::HALF);
+    let strays = surface.strays(halves);
+    let [along_u, along_v] = [fv.abs() + gv.abs(), fu.abs() + gu.abs()].map(|length| length * strays);
+    // Chords are derivatives times whole widths.
+    let determinant = (fu * gv - gu * fv).abs();
+    let [u, v] = halves;
+    // The way that an error makes in u, by the inverse of the Jacobian, is that times a width; and must be less than half of either.
+    let way = along_u * u + along_v * v;
+    way <= determinant * P::Scalar::TWO * u.lesser(v)
 }
 
 /// What a clip leads to.

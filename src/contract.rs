@@ -34,6 +34,12 @@ pub(crate) enum Single<S> {
 /// on the common teapot.
 const PROVABLE: f64 = 0.0025;
 
+/// Whether it is worth asking of a region of these widths.
+#[inline(always)]
+pub(crate) fn is_provable<P: Point>(surface: &Surface<'_, P>, widths: [P::Scalar; 2]) -> bool {
+    surface.strays(widths) <= P::Scalar::from_f64(PROVABLE)
+}
+
 /// Newton's method, in a region that is proved to hold at most one root: ends with that root, or with the proof that there
 /// is none.
 ///
@@ -50,7 +56,7 @@ pub(crate) fn contract<P: Point>(
     basis: &mut BasisView<'_, P::Scalar>,
     work: &mut Work,
 ) -> Result<Contraction<P::Scalar>, Limit> {
-    if !(surface.strays(region.widths()) <= P::Scalar::from_f64(PROVABLE)) {
+    if !is_provable(surface, region.widths()) {
         return Ok(Contraction::Open);
     }
     // Ends: each turn counts a step against its budget; and the region halves until the number type holds no more.

@@ -249,7 +249,8 @@ impl<S: Scalar> Place<S> {
             // Where the least step of u or v that the number type holds is a way in space, the depth is known better than they
             // can be said.
             let local = Local::at(at, net.degrees(), whole, basis)?;
-            let unsaid = |step: &[S; 2]| step.iter().all(|c| c.abs() <= S::EPSILON) && !local.may_be_singular();
+            let unsaid =
+                |step: &[S; 2]| step.iter().all(|c| c.abs() <= S::EPSILON * S::from_u32(4)) && !local.may_be_singular();
             if let Some([du, dv]) = local.step().filter(unsaid) {
                 depth = depth + (along[0] * du + along[1] * dv) / local.weight;
             }

@@ -136,9 +136,9 @@ fn cusps(draw: &mut Draw) -> Vec<Case> {
     let surface = net(3, 2, |i, j| [square[i], j as f64 - 1.0, cube[i] + if j == 1 { 0.25 } else { 0.0 }]);
     let rays = (0..draw.rays).map(|_| {
         let [near, any, v] = [0.5 + 0.5 * draw.ladder(), draw.random.within(0.0, 1.0), draw.random.within(0.0, 1.0)];
-        let u = *draw.pick(&[near, any]);
+        let u = *draw.pick(&[near, any, any]);
         // On one of the two sheets, or beside the edge in which they meet.
-        let off = *draw.pick(&[0.0, 0.0, 1.0]) * draw.ladder();
+        let off = *draw.pick(&[0.0, 0.0, 0.0, 1.0]) * draw.ladder();
         let target = point(&surface, u, v) + DVec3::X * off;
         draw.ray_to(target, 4.0)
     });
