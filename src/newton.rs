@@ -252,7 +252,7 @@ impl<S: Scalar> Place<S> {
             let unsaid =
                 |step: &[S; 2]| step.iter().all(|c| c.abs() <= S::EPSILON * S::from_u32(4)) && !local.may_be_singular();
             if let Some([du, dv]) = local.step().filter(unsaid) {
-                depth = depth + (along[0] * du + along[1] * dv) / local.weight;
+                depth += (along[0] * du + along[1] * dv) / local.weight;
             }
         }
         let [u, v] = at;
