@@ -235,3 +235,6 @@ pub(crate) fn on_line<P: Point>(
     }
     first_met(surface, planes, [middle, first, second], within, basis)
 }
+
+#[cfg(test)]
+mod tests;
