@@ -32,23 +32,34 @@ pub struct Noise<S> {
     pub tolerance: S,
 }
 
+/// The corners of a projected net: at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1).
+#[inline(always)]
+pub(crate) fn corners<F: Flat>(degrees: Degrees, net: &[F]) -> [[F::Scalar; 2]; 4] {
+    let columns = degrees.columns();
+    let last = net.len().saturating_sub(columns);
+    [0, last, columns - 1, last + columns - 1].map(|k| position(net.get(k).copied().unwrap_or(F::ZERO)))
+}
+
+/// The sums of a net's two chords along u, and along v, from its corners.
+#[inline(always)]
+pub(crate) fn chords<S: Scalar>([p00, p10, p01, p11]: [[S; 2]; 4]) -> [[S; 2]; 2] {
+    let chord = |a: [S; 2], b: [S; 2], c: [S; 2], d: [S; 2]| [b[0] - a[0] + (d[0] - c[0]), b[1] - a[1] + (d[1] - c[1])];
+    [chord(p00, p10, p01, p11), chord(p00, p01, p10, p11)]
+}
+
 /// The normal of the line to which distances are taken when `direction` is clipped, of a projected net with these corners.
 ///
 /// The lines are Nishita, Sederberg and Kakimoto's: L_u, for clipping u, along the net's mean chord in v, and L_v along that in
 /// u, so that distances to L_u change with u and hardly with v.
 #[inline(always)]
-fn normal<F: Flat>(corners: [F; 4], direction: Direction) -> [F::Scalar; 2] {
-    let [p00, p10, p01, p11] = corners.map(position);
-    let chord = |a: [F::Scalar; 2], b: [F::Scalar; 2], c: [F::Scalar; 2], d: [F::Scalar; 2]| {
-        [b[0] - a[0] + (d[0] - c[0]), b[1] - a[1] + (d[1] - c[1])]
-    };
-    let (u, v) = (chord(p00, p10, p01, p11), chord(p00, p01, p10, p11));
+fn normal<S: Scalar>(corners: [[S; 2]; 4], direction: Direction) -> [S; 2] {
+    let [u, v] = chords(corners);
     let dot = u[0] * v[0] + u[1] * v[1];
     let (uu, vv) = (u[0] * u[0] + u[1] * u[1], v[0] * v[0] + v[1] * v[1]);
     // Lines that are all but parallel clip the same strip twice. Efremov, Havran and Seidel spread them from 60° on; but spread
     // lines no longer follow the chords, and clips then close in by a share instead of by squares: at 60° half of all
     // clips on the common teapot are of that kind, and a third of the time is lost. At 6° it is the other way round.
-    if dot * dot <= F::Scalar::from_f64(0.99) * (uu * vv) && uu > F::Scalar::ZERO && vv > F::Scalar::ZERO {
+    if dot * dot <= S::from_f64(0.99) * (uu * vv) && uu > S::ZERO && vv > S::ZERO {
         return turned(match direction {
             Direction::U => v,
             Direction::V => u,
@@ -132,9 +143,7 @@ fn clip_any_degree<F: Flat>(
     noise: &Noise<F::Scalar>,
 ) -> Clip<F::Scalar> {
     let (rows, columns) = (degrees.rows(), degrees.columns());
-    let corner = |k: usize| net.get(k).copied().unwrap_or(F::ZERO);
-    let last = (rows - 1) * columns;
-    let normal = normal([corner(0), corner(last), corner(columns - 1), corner(last + columns - 1)], direction);
+    let normal = normal(corners(degrees, net), direction);
     let mut extents = [[F::Scalar::INFINITY, F::Scalar::LEAST]; MAX_DEGREE + 1];
     for (i, row) in net.chunks_exact(columns).enumerate() {
         for (j, &point) in row.iter().enumerate() {
@@ -163,7 +172,7 @@ fn clip_unrolled<F: Flat, const ORDER: usize, const N: usize>(
     noise: &Noise<F::Scalar>,
 ) -> Clip<F::Scalar> {
     const { assert!(ORDER * ORDER == N && ORDER > 1) }
-    let normal = normal([net[0], net[N - ORDER], net[ORDER - 1], net[N - 1]], direction);
+    let normal = normal([net[0], net[N - ORDER], net[ORDER - 1], net[N - 1]].map(position), direction);
     let mut distances = [F::Scalar::ZERO; N];
     for k in 0..N {
         distances[k] = distance(net[k], normal);

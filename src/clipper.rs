@@ -10,7 +10,7 @@
 //! (1997) found, where a region shrinks to a point that the ray passes by.
 
 use crate::bernstein::{BasisView, Full};
-use crate::clip::{Clip, clip};
+use crate::clip::{Clip, chords, clip, corners};
 use crate::contract::{Contraction, Single, contract, is_provable, single};
 use crate::graze::{Across, across, allowed, first_met, on_line, polished};
 use crate::limits::{Limit, Limits, Work, spend};
@@ -239,11 +239,11 @@ fn may_be_single<P: Point>(surface: &Surface<'_, P>, part: &Part<'_, P::Flat>) -
     if !is_provable(surface, widths) {
         return false;
     }
-    let [[fu, gu], [fv, gv]] = part.chords();
+    let [[fu, gu], [fv, gv]] = chords(corners(part.degrees, part.net)).map(|chord| chord.map(|c| c * P::Scalar::HALF));
     let halves = widths.map(|width| width * P::Scalar::HALF);
     let strays = surface.strays(halves);
     let [along_u, along_v] = [fv.abs() + gv.abs(), fu.abs() + gu.abs()].map(|length| length * strays);
-    // Chords are derivatives times whole widths.
+    // Mean chords are derivatives times whole widths.
     let determinant = (fu * gv - gu * fv).abs();
     let [u, v] = halves;
     // The way that an error makes in u, by the inverse of the Jacobian, is that times a width; and must be less than half of either.

@@ -5,12 +5,12 @@
 //! is smaller than what parts it from the ray, squared; but across, the distances are those of a parabola, and a region as
 //! large as its own way to the fold is told from the ray. So work grows by the logarithm of the margin, not by its inverse.
 //!
-//! Ours; Efremov, Havran and Hoffmann (2005) spread the lines, which parts neither case.
+//! Ours; Efremov, Havran and Seidel (2005) spread the lines, which parts neither case.
 
 use crate::bernstein::{BasisView, Degrees, Full};
-use crate::clip::Noise;
+use crate::clip::{Noise, corners};
 use crate::limits::Limit;
-use crate::newton::{Local, Place, noise};
+use crate::newton::{Place, noise};
 use crate::planes::Planes;
 use crate::point::{Flat, Point};
 use crate::region::Region;
@@ -32,13 +32,8 @@ pub(crate) enum Across<S> {
 #[cold]
 #[inline(never)]
 pub(crate) fn across<F: Flat>(degrees: Degrees, net: &[F], noise: &Noise<F::Scalar>) -> Across<F::Scalar> {
-    let (columns, last) = (degrees.columns(), net.len().saturating_sub(1));
-    let corner = |k: usize| {
-        let point = net.get(k).copied().unwrap_or(F::ZERO);
-        point.f_g().map(|c| c / point.weight())
-    };
-    let [a, b, c, d] = [0, last, columns - 1, last + 1 - columns.min(last + 1)].map(corner);
-    let diagonals = [[b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]];
+    let [p00, p10, p01, p11] = corners(degrees, net);
+    let diagonals = [[p11[0] - p00[0], p11[1] - p00[1]], [p01[0] - p10[0], p01[1] - p10[1]]];
     let [first, second] = diagonals.map(|[x, y]| x * x + y * y);
     let [x, y] = if first >= second { diagonals[0] } else { diagonals[1] };
     let largest = x.abs().greater(y.abs());
@@ -60,7 +55,7 @@ pub(crate) fn across<F: Flat>(degrees: Degrees, net: &[F], noise: &Noise<F::Scal
         return Across::Apart;
     }
     // Not the tolerance, within which a cubic contact still is one root and no other.
-    if high - low <= error * F::Scalar::from_u32(4) && is_steady(columns, net, along, noise) {
+    if high - low <= error * F::Scalar::from_u32(4) && is_steady(degrees.columns(), net, along, noise) {
         return Across::Line(along);
     }
     Across::Open
@@ -82,7 +77,8 @@ fn is_steady<F: Flat>(columns: usize, net: &[F], [x, y]: [F::Scalar; 2], noise: 
     [along_u, along_v].iter().any(|[low, high]| *low > error || *high < -error)
 }
 
-/// How far the points of a region that can be told no closer pass the ray at most, by the measure of [`Local::distance`].
+/// How far the points of a region that can be told no closer pass the ray at most, by the measure of
+/// [`Local::distance`](crate::newton::Local::distance).
 #[inline(always)]
 pub(crate) fn allowed<S: Scalar>(tolerance: S, error: S) -> S {
     tolerance * S::TWO + error * S::from_u32(16) + noise()
@@ -128,34 +124,16 @@ pub(crate) fn polished<P: Point>(
     at: [P::Scalar; 2],
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Place<P::Scalar>, Limit> {
-    let mut look = |at| Ok(Place { at, local: Local::at(at, surface.net.degrees(), whole, basis)? });
     let around = region.sides.map(|[low, high]| {
         let reach = (high - low) * P::Scalar::from_u32(REACH);
         [P::Scalar::ZERO.greater(low - reach), P::Scalar::ONE.lesser(high + reach)]
     });
-    let mut place = look(at)?;
-    for _ in 0..POLISHING {
-        // Along a line that the ray follows, rounding alone would choose where to go.
-        let Some([du, dv]) = place.local.step().filter(|_| !place.local.may_be_singular()) else {
-            break;
-        };
-        let [u, v] = place.at;
-        let [[u0, u1], [v0, v1]] = around;
-        let next = look([(u + du).clamped(u0, u1), (v + dv).clamped(v0, v1)])?;
-        if !(next.local.distance() < place.local.distance()) {
-            break;
-        }
-        place = next;
-    }
-    Ok(place)
+    Place::polished(at, around, surface.net.degrees(), whole, basis)
 }
 
 /// See [`polished`]. Less leaves more of the roots of cubic contact a third of the digits; more may lead to another root, and
 /// leave the region's own to its neighbours.
 const REACH: u32 = 8;
-
-/// Newton's steps from a point of a settled region: from within the error of a net of 15 × 15 in `f32`, two are mostly enough.
-const POLISHING: u32 = 3;
 
 /// Steps toward the line's zero: of a region small enough to be seen as a line the first is all but exact.
 const STEPS: u32 = 3;
@@ -173,7 +151,7 @@ pub(crate) fn on_line<P: Point>(
     within: [P::Scalar; 2],
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Option<Place<P::Scalar>>, Limit> {
-    let mut look = |at| Ok::<_, Limit>(Place { at, local: Local::at(at, surface.net.degrees(), whole, &mut *basis)? });
+    let mut look = |at| Place::look(at, surface.net.degrees(), whole, basis);
     let widths = region.widths();
     // The shortest way to where the distance along the line is 0, in shares of the region's widths; and how that distance grows.
     let toward = |place: &Place<P::Scalar>| {

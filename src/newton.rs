@@ -243,12 +243,12 @@ impl<S: Scalar> Place<S> {
     ) -> Result<Root<S>, Limit> {
         let along = planes.depth_derivatives(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
         let grazing = self.local.is_tangent(along, limits.tolerance);
-        let at = self.refined(net, whole, basis)?;
+        let whole_domain = [[S::ZERO, S::ONE]; 2];
+        let Place { at, local } = Place::polished(self.at, whole_domain, net.degrees(), whole, basis)?;
         let mut depth = planes.depth_on(net, at, basis).map_err(|Full| Limit::Scratch)?;
         if !grazing {
             // Where the least step of u or v that the number type holds is a way in space, the depth is known better than they
             // can be said.
-            let local = Local::at(at, net.degrees(), whole, basis)?;
             let unsaid =
                 |step: &[S; 2]| step.iter().all(|c| c.abs() <= S::EPSILON * S::from_u32(4)) && !local.may_be_singular();
             if let Some([du, dv]) = local.step().filter(unsaid) {
@@ -259,30 +259,43 @@ impl<S: Scalar> Place<S> {
         Ok(Root { u, v, depth, grazing })
     }
 
-    /// Where a few more steps lead, as long as each brings the ray nearer. What the tolerance leaves across the ray is, along it,
-    /// more by the inverse of the angle, or for cubic contact a third of the digits.
+    /// The place at (u, v) of a projected net.
+    #[inline(always)]
+    pub(crate) fn look<F: Flat<Scalar = S>>(
+        at: [S; 2],
+        degrees: Degrees,
+        net: &[F],
+        basis: &mut BasisView<'_, S>,
+    ) -> Result<Self, Limit> {
+        Ok(Place { at, local: Local::at(at, degrees, net, basis)? })
+    }
+
+    /// Where a few of Newton's steps lead from (u, v) within a rectangle of the domain, as long as each brings the ray nearer.
+    /// What a tolerance leaves across the ray is, along it, more by the inverse of the angle, or for cubic contact a third of the
+    /// digits.
     #[cold]
     #[inline(never)]
-    fn refined<P: Point<Scalar = S>>(
-        &self,
-        net: &Net<'_, P>,
-        whole: &[P::Flat],
+    pub(crate) fn polished<F: Flat<Scalar = S>>(
+        at: [S; 2],
+        within: [[S; 2]; 2],
+        degrees: Degrees,
+        net: &[F],
         basis: &mut BasisView<'_, S>,
-    ) -> Result<[S; 2], Limit> {
-        let mut at = self.at;
-        let mut local = Local::at(at, net.degrees(), whole, basis)?;
-        for _ in 0..REFINING {
-            let Some(step) = local.step().filter(|_| !local.may_be_singular()) else {
+    ) -> Result<Self, Limit> {
+        let mut place = Place::look(at, degrees, net, basis)?;
+        for _ in 0..POLISHING {
+            // Along a line that the ray follows, rounding alone would choose where to go.
+            let Some(step) = place.local.step().filter(|_| !place.local.may_be_singular()) else {
                 break;
             };
-            let next = core::array::from_fn(|k| (at[k] + step[k]).clamped(S::ZERO, S::ONE));
-            let there = Local::at(next, net.degrees(), whole, basis)?;
-            if !(there.residual() < local.residual()) {
+            let to = |k: usize| (place.at[k] + step[k]).clamped(within[k][0], within[k][1]);
+            let next = Place::look([to(0), to(1)], degrees, net, basis)?;
+            if !(next.local.distance() < place.local.distance()) {
                 break;
             }
-            (at, local) = (next, there);
+            place = next;
         }
-        Ok(at)
+        Ok(place)
     }
 }
 
@@ -293,8 +306,9 @@ fn weighted<P: Point>() -> P::Scalar {
     if P::RATIONAL { P::Scalar::from_u32(4) } else { P::Scalar::ONE }
 }
 
-/// Steps that a shallow root is worth: from the tolerance of `f32` three reach its rounding.
-const REFINING: u32 = 3;
+/// Steps that polishing is worth: from the tolerance of `f32` three reach its rounding, and from within the error of a net of
+/// 15 × 15 two mostly do.
+const POLISHING: u32 = 3;
 
 /// The sine below which an angle between ray and surface makes a hit grazing.
 #[inline(always)]

@@ -42,24 +42,6 @@ impl<'a, F: Flat> Part<'a, F> {
         Ok(Some(Part { region: Region::WHOLE, degrees, net, reach, error, projected: error }))
     }
 
-    /// The mean chords of its net in u and in v: about the derivatives times the widths of the region, of a rational net at
-    /// weight 1.
-    #[inline(always)]
-    pub(crate) fn chords(&self) -> [[F::Scalar; 2]; 2] {
-        let (columns, points) = (self.degrees.columns(), self.net.len());
-        let corner = |k: usize| {
-            let point = self.net.get(k).copied().unwrap_or(F::ZERO);
-            let [f, g] = point.f_g();
-            if F::RATIONAL { [f / point.weight(), g / point.weight()] } else { [f, g] }
-        };
-        let last = points.saturating_sub(columns);
-        let [p00, p10, p01, p11] = [0, last, columns - 1, last + columns - 1].map(corner);
-        let mean = |a: [F::Scalar; 2], b: [F::Scalar; 2], c: [F::Scalar; 2], d: [F::Scalar; 2]| {
-            [(b[0] - a[0] + (d[0] - c[0])) * F::Scalar::HALF, (b[1] - a[1] + (d[1] - c[1])) * F::Scalar::HALF]
-        };
-        [mean(p00, p10, p01, p11), mean(p00, p01, p10, p11)]
-    }
-
     /// What to allow for when its coefficients are compared, all of them alike, with this much of tolerance for its points.
     #[inline(always)]
     pub(crate) fn noise(&self, tolerance: F::Scalar) -> Noise<F::Scalar> {

@@ -6,7 +6,6 @@
 use patchray::bernstein::MAX_DEGREE;
 use patchray::frame::{Aabb, exact_origin};
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
-use patchray::limits::{Extent, Work};
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::{Plain, Point, Weighted};
 use patchray::scalar::Scalar;
@@ -17,11 +16,11 @@ use patchray::tree::Tree;
 
 use crate::memory::{Bytes, Kind, Slots};
 use crate::scene::model::{Model, ModelSurface};
-use crate::scene::trace::{Acceptance, Method};
-use crate::settings::Settings;
+use crate::scene::trace::Method;
 
 mod error;
 mod view;
+mod worst_case;
 
 pub use error::LowerError;
 
@@ -344,29 +343,6 @@ impl<P: Point> Lowered<P> {
     /// The grids; empty if they were not built.
     pub fn grids(&self) -> Grids<'_, P::Scalar> {
         Grids::new(&self.grids, &self.grid_offsets, &self.grid_references)
-    }
-
-    /// How large it is for a method, in the kernel's terms.
-    pub fn extent(&self, settings: &Settings) -> Extent {
-        let count = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
-        let Settings { method, acceptance, .. } = *settings;
-        let original = matches!(method, Method::Newton | Method::Clipping);
-        let newtons = matches!(method, Method::Newton | Method::NewtonCoherent | Method::NewtonPredicted);
-        Extent {
-            surfaces: count(self.surfaces.len()),
-            nodes: if method == Method::Newton { count(self.nodes.len()) } else { 0 },
-            patches: count(self.patches.len()),
-            scene_voxels: self.scene().longest_walk(),
-            surface_voxels: if original { 0 } else { self.grids().longest_walks() },
-            spans: 0,
-            walks: if original { 0 } else { 2 },
-            clipped: !newtons || acceptance == Acceptance::Proved,
-        }
-    }
-
-    /// The most work that a ray can take in a scene of this extent under the limits of `settings`.
-    pub fn worst_case(&self, extent: &Extent, settings: &Settings) -> Work {
-        settings.limits::<P::Scalar>().worst_case(extent)
     }
 
     /// What was built.

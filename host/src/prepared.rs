@@ -1,6 +1,6 @@
 //! A lowered scene of whichever point type it needs: plain or weighted, `f32` or `f64`.
 
-use patchray::limits::{Extent, Work};
+use patchray::limits::Work;
 use patchray::point::{Plain, Point, Weighted};
 
 use crate::lower::{LowerError, Lowered, Stages, unfit};
@@ -199,20 +199,14 @@ impl Prepared {
         })
     }
 
-    /// The most work that a ray of no view can take by the method, and under the limits, of `settings`, whose stages have to
-    /// have been built; see [`Limits::worst_case`](patchray::limits::Limits::worst_case).
+    /// The most work that a ray of no view can take: see [`Lowered::worst_case`].
     pub fn worst_case(&self, settings: &Settings) -> Work {
-        any!(self, lowered => lowered.worst_case(&lowered.extent(settings), settings))
+        any!(self, lowered => lowered.worst_case(settings))
     }
 
     /// The same for a ray of a view.
     pub fn worst_case_in_view(&self, settings: &Settings) -> Work {
-        any!(self, lowered => {
-            let extent = lowered.extent(settings);
-            // A line may show everything, and a view has neither trees nor grids.
-            let spans = extent.surfaces.max(extent.patches);
-            lowered.worst_case(&Extent { spans, nodes: 0, surface_voxels: 0, scene_voxels: 0, ..extent }, settings)
-        })
+        any!(self, lowered => lowered.worst_case_in_view(settings))
     }
 
     /// The number of surfaces.

@@ -62,7 +62,7 @@ fn a_graze_takes_little_more_work_than_a_hit() {
                 for case in (family.cases)(&mut draw) {
                     let case = in_precision(&case, precision);
                     let Shot::Rays(grazes) = &case.shot else { panic!("they are rays") };
-                    let hits = Case::of_rays(case.model.clone(), draw.rays_onto(&case.model));
+                    let hits = Case::of_rays(case.model.clone(), draw.rays_onto(&case.model, 1000));
                     let hits = in_precision(&hits, precision);
                     let Shot::Rays(onto) = &hits.shot else { panic!("they are rays") };
                     let (typical, all) = (steps(&case, onto, &settings, true), steps(&case, grazes, &settings, false));

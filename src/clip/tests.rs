@@ -99,7 +99,7 @@ fn what_varies_by_less_than_the_tolerance_is_settled() {
 /// Chords along u and along v fall on one line where the ray is tangent, and both clips would clip the same strip.
 #[test]
 fn lines_are_never_near_parallel() {
-    let corners = |u: [f64; 2], v: [f64; 2]| [[0.0, 0.0], u, v, [u[0] + v[0], u[1] + v[1]]].map(Tuple);
+    let corners = |u: [f64; 2], v: [f64; 2]| [[0.0, 0.0], u, v, [u[0] + v[0], u[1] + v[1]]];
     let angle = |u: [f64; 2], v: [f64; 2]| {
         let [a, b] = [Direction::U, Direction::V].map(|direction| normal(corners(u, v), direction));
         let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);

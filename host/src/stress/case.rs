@@ -94,26 +94,24 @@ impl Draw {
     }
 
     /// Rays from outside to points in the box of the model's control points: half of them met somewhere, by experience.
-    pub fn rays_at(&mut self, model: &Model) -> Vec<RayLine> {
+    pub fn rays_at(&mut self, model: &Model, count: usize) -> Vec<RayLine> {
         let Some(bounds) = model.control_box() else { return Vec::new() };
-        let diagonal = bounds.diagonal();
-        (0..self.rays)
+        (0..count)
             .map(|_| {
                 let target = DVec3::from_array([0, 1, 2].map(|k| self.random.within(bounds.min[k], bounds.max[k])));
-                self.ray_to(target, 1.5 * diagonal)
+                self.ray_to(target, away(model))
             })
             .collect()
     }
 
     /// Rays from outside to points of the model's surfaces.
-    pub fn rays_onto(&mut self, model: &Model) -> Vec<RayLine> {
-        let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());
-        (0..self.rays)
+    pub fn rays_onto(&mut self, model: &Model, count: usize) -> Vec<RayLine> {
+        (0..count)
             .map(|_| {
                 let surface = self.pick(&model.surfaces);
                 let [u, v] = [0; 2].map(|_| self.random.within(0.0, 1.0));
                 let target = point(surface, u, v);
-                self.ray_to(target, 1.5 * diagonal)
+                self.ray_to(target, away(model))
             })
             .collect()
     }
@@ -123,6 +121,11 @@ impl Draw {
         let place = self.random.within(0.0, list.len() as f64) as usize;
         &list[place.min(list.len() - 1)]
     }
+}
+
+/// How far from what they are aimed at rays begin: outside of the model.
+pub fn away(model: &Model) -> f64 {
+    1.5 * model.control_box().map_or(0.0, |bounds| bounds.diagonal())
 }
 
 /// A ray ahead of its origin.
@@ -150,4 +153,14 @@ pub fn mapped(model: &Model, map: impl Fn(DVec3) -> DVec3) -> Model {
         *point = [x, y, z, point[3]];
     }
     model
+}
+
+/// The models, each with its part of the rays onto it.
+pub fn onto(draw: &mut Draw, models: Vec<Model>) -> Vec<Case> {
+    let rays = draw.rays / models.len().max(1);
+    let cases = models.into_iter().map(|model| {
+        let lines = draw.rays_onto(&model, rays);
+        Case::of_rays(model, lines)
+    });
+    cases.collect()
 }

@@ -9,6 +9,7 @@ use super::case::{Case, Draw, Family, Shot};
 use super::truth;
 use crate::judge::{Agreement, Truth, allowance};
 use crate::lower::{LowerError, Stages};
+use crate::measure::trace_picture;
 use crate::prepared::Prepared;
 use crate::scanline::{Each, Outcome, Tally};
 use crate::scene::rays::RayLine;
@@ -170,7 +171,7 @@ struct Answers {
     most_steps: u64,
 }
 
-/// What a ray took, and whether that is more than what is stated.
+/// The steps of each ray.
 fn steps_of(each: &[Each]) -> Vec<u64> {
     each.iter().map(|each| u64::from(each.steps)).collect()
 }
@@ -202,11 +203,7 @@ fn trace(case: &Case, rays: &[RayLine], settings: &Settings) -> Result<Answers, 
             let (tracer, _) = viewed.tracer()?;
             let mut lane = tracer.lane();
             let mut tally = Tally { each: Some(Vec::new()), ..Tally::default() };
-            for line in 0..view.scan_lines() {
-                let samples = view.scan_line(line);
-                let rays = crate::scanline::rays_of(view, line, &samples);
-                lane.trace_line(&samples, &rays, &mut outcomes, &mut tally);
-            }
+            trace_picture(lane.as_mut(), view, &mut tally, |line| outcomes.extend_from_slice(line));
             let steps = steps_of(tally.each.as_deref().unwrap_or_default());
             let most_steps = most_steps(&worst);
             let beyond = steps.iter().filter(|&&steps| steps > most_steps).count() as u64;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::scene::model::{Model, ModelSurface};
 use crate::scene::shapes::{bumpy, cylinder, parallelogram, single, sphere, torus};
 use crate::scene::teapot;
-use crate::stress::case::{Case, Draw, Family, point, ray};
+use crate::stress::case::{Case, Draw, Family, away, point, ray};
 
 pub(super) const FAMILIES: [Family; 2] = [
     Family {
@@ -65,7 +65,7 @@ fn seams(draw: &mut Draw) -> Vec<Case> {
     let rays = draw.rays / models.len();
     let cases = models.into_iter().map(|model| {
         let edges = shared_edges(&model);
-        let distance = 1.5 * model.control_box().map_or(0.0, |bounds| bounds.diagonal());
+        let distance = away(&model);
         let lines = (0..rays).map(|_| {
             let &(number, edge) = draw.pick(&edges);
             // Every eighth at a corner.

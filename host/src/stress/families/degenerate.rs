@@ -7,7 +7,7 @@ use crate::scene::model::{Model, ModelSurface};
 use crate::scene::rays::RayLine;
 use crate::scene::revolution::{Arcs, Curve, revolve};
 use crate::scene::shapes::{bumpy, elevate, net, parallelogram, single, sphere};
-use crate::stress::case::{Case, Draw, Family, point, ray};
+use crate::stress::case::{Case, Draw, Family, onto, point, ray};
 
 pub(super) const FAMILIES: [Family; 5] = [
     Family {
@@ -163,15 +163,7 @@ fn coincident(draw: &mut Draw) -> Vec<Case> {
         twice,
     ];
     let models = models.map(Model::numbered);
-    models.into_iter().map(|model| Case { shot: share(draw, 4, &model), ..Case::of_rays(model, Vec::new()) }).collect()
-}
-
-/// A part of the rays, onto the surfaces.
-fn share(draw: &mut Draw, parts: usize, model: &Model) -> crate::stress::case::Shot {
-    let mut part = Draw { rays: draw.rays / parts, ..draw.clone() };
-    let rays = part.rays_onto(model);
-    draw.random = part.random;
-    crate::stress::case::Shot::Rays(rays)
+    onto(draw, models.to_vec())
 }
 
 fn no_area(draw: &mut Draw) -> Vec<Case> {
@@ -183,6 +175,6 @@ fn no_area(draw: &mut Draw) -> Vec<Case> {
         net(1, 1, |i, j| if i == 0 { [0.0, 0.0, 0.5] } else { [0.5, j as f64, 0.5] }),
     ];
     let model = Model::numbered([models, vec![flat]].concat());
-    let rays = draw.rays_at(&model);
+    let rays = draw.rays_at(&model, draw.rays);
     vec![Case::of_rays(model, rays)]
 }

@@ -7,7 +7,7 @@ use crate::scene::rays::RayLine;
 use crate::scene::shapes::{bumpy, single, sphere, torus};
 use crate::scene::teapot;
 use crate::scene::trace::Precision;
-use crate::stress::case::{Case, Draw, Family, mapped};
+use crate::stress::case::{Case, Draw, Family, away, mapped};
 
 pub(super) const FAMILIES: [Family; 6] = [
     Family { name: "scales", what: "coordinates from 1e-30 to 1e30", grazing: false, cases: scales },
@@ -53,9 +53,7 @@ fn changed<C: Copy>(
     let mut cases = Vec::new();
     for &by in changes {
         for model in ordinary() {
-            let mut part = Draw { rays, ..draw.clone() };
-            let lines = part.rays_onto(&model);
-            draw.random = part.random;
+            let lines = draw.rays_onto(&model, rays);
             cases.push(change(draw, by, model, lines));
         }
     }
@@ -98,7 +96,7 @@ fn origins(draw: &mut Draw) -> Vec<Case> {
                 ray.direction = short.to_array();
             } else {
                 // Near a point of the surface, which the ray was aimed at; then the point itself is not counted.
-                origin += direction * (1.5 * model.control_box().map_or(0.0, |bounds| bounds.diagonal()) - by);
+                origin += direction * (away(&model) - by);
                 if by == 0.0 {
                     ray.t_min = *draw.pick(&[1e-3, -1e-3, 1e-2]);
                 }
@@ -120,7 +118,7 @@ fn lengths(draw: &mut Draw) -> Vec<Case> {
 
 fn axes(draw: &mut Draw) -> Vec<Case> {
     changed(draw, &[0.0, -0.0, 1e-300, -1e-45, 1e-17], |draw, by, model, mut rays| {
-        let distance = 1.5 * model.control_box().map_or(0.0, |bounds| bounds.diagonal());
+        let distance = away(&model);
         for ray in &mut rays {
             let target = DVec3::from_array(ray.origin) + DVec3::from_array(ray.direction) * distance;
             let kept = *draw.pick(&[1_usize, 2, 4, 3, 5, 6]);
@@ -134,7 +132,7 @@ fn axes(draw: &mut Draw) -> Vec<Case> {
 
 fn intervals(draw: &mut Draw) -> Vec<Case> {
     changed(draw, &[0, 1, 2, 3], |draw, kind, model, mut rays| {
-        let distance = 1.5 * model.control_box().map_or(0.0, |bounds| bounds.diagonal());
+        let distance = away(&model);
         for ray in &mut rays {
             // Rays are aimed at a root from this far away.
             let near = distance + draw.ladder();

@@ -6,7 +6,7 @@ use crate::scene::model::{Model, ModelSurface};
 use crate::scene::shapes::roots::{folded, grid_of_roots, spread};
 use crate::scene::shapes::{Random, bumpy, parallelogram, single, sphere};
 use crate::scene::trace::Precision;
-use crate::stress::case::{Case, Draw, Family, Shot, mapped, ray};
+use crate::stress::case::{Case, Draw, Family, Shot, mapped, onto, ray};
 
 pub(super) const FAMILIES: [Family; 5] = [
     Family { name: "aspect", what: "slivers 1e3 to 1e9 times as long as wide", grazing: false, cases: aspect },
@@ -20,18 +20,6 @@ pub(super) const FAMILIES: [Family; 5] = [
     Family { name: "degrees", what: "degrees from 1 × 15 and 2 × 12 to 15 × 15", grazing: false, cases: degrees },
     Family { name: "many-roots", what: "up to 25 roots on a ray", grazing: false, cases: many_roots },
 ];
-
-/// The models, each with its part of the rays onto it.
-fn onto(draw: &mut Draw, models: Vec<Model>) -> Vec<Case> {
-    let rays = draw.rays / models.len();
-    let cases = models.into_iter().map(|model| {
-        let mut part = Draw { rays, ..draw.clone() };
-        let lines = part.rays_onto(&model);
-        draw.random = part.random;
-        Case::of_rays(model, lines)
-    });
-    cases.collect()
-}
 
 fn aspect(draw: &mut Draw) -> Vec<Case> {
     let tilted = |p: DVec3| DVec3::new(0.6 * p.x - 0.8 * p.y, 0.8 * p.x + 0.6 * p.y, p.z + 0.3 * p.x);
@@ -48,7 +36,7 @@ fn aspect(draw: &mut Draw) -> Vec<Case> {
     // Every other ray is aimed at the box, and passes the sliver at some distance.
     for case in &mut cases {
         if let Shot::Rays(rays) = &mut case.shot {
-            let around = draw.rays_at(&case.model);
+            let around = draw.rays_at(&case.model, draw.rays);
             rays.iter_mut().zip(around).step_by(2).for_each(|(ray, other)| *ray = other);
         }
     }
