@@ -72,7 +72,7 @@ impl<S: Scalar> GridSlot<S> {
     }
 
     /// Builds a grid over `count` items, whose boxes `boxes` gives, with about `density` voxels per item and at most
-    /// `most` voxels. Offsets and references go into arenas, which may be too small: then they only count.
+    /// `most` voxels; fewer if their references would be more than [`MAX_REFERENCES`]. Offsets and references go into arenas, which may be too small: then they only count.
     pub fn build(
         count: usize,
         boxes: impl Fn(usize) -> Aabb<S>,
@@ -85,24 +85,32 @@ impl<S: Scalar> GridSlot<S> {
             return Err(TooLarge);
         }
         let bounds = (0..count).fold(Aabb::EMPTY, |all, k| all.union(boxes(k)));
-        let counts = shape(&bounds.sides(), count, density, most);
         let first = u32::try_from(offsets.len()).map_err(|_| TooLarge)?;
-        let cell = core::array::from_fn(|k| bounds.sides()[k] / S::from_u32(counts[k]));
-        let inverse_cell = cell.map(|side: S| if side > S::ZERO { S::ONE / side } else { S::ZERO });
         let from = references.len();
         let first_reference = u32::try_from(from).map_err(|_| TooLarge)?;
-        let slot = GridSlot { bounds, cell, inverse_cell, counts, first, first_reference };
-        let voxels = counts.iter().product::<u32>() as usize;
+        let mut density = density;
+        // Ends: half as many voxels are wanted each time, and of one voxel there is nothing to halve.
+        let (slot, total) = loop {
+            let counts = shape(&bounds.sides(), count, density, most);
+            let cell = core::array::from_fn(|k| bounds.sides()[k] / S::from_u32(counts[k]));
+            let inverse_cell = cell.map(|side: S| if side > S::ZERO { S::ONE / side } else { S::ZERO });
+            let slot = GridSlot { bounds, cell, inverse_cell, counts, first, first_reference };
+            // Counting needs no memory: the blocks' sizes.
+            let total = (0..count).fold(0_usize, |total, k| {
+                let [low, high] = slot.block(&boxes(k));
+                total.saturating_add((0..3).fold(1, |size, a| size * (high[a] - low[a] + 1) as usize))
+            });
+            if total <= MAX_REFERENCES {
+                break (slot, total);
+            }
+            // Items as large as the grid lie in most voxels, and finer ones part nothing.
+            if counts == [1; 3] {
+                return Err(TooLarge);
+            }
+            density = density * S::HALF;
+        };
+        let voxels = slot.counts.iter().product::<u32>() as usize;
         offsets.extend(voxels + 1, 0);
-        // Counting needs no memory: the blocks' sizes.
-        let mut total = 0_usize;
-        for k in 0..count {
-            let [low, high] = slot.block(&boxes(k));
-            total = total.saturating_add((0..3).fold(1, |size, a| size * (high[a] - low[a] + 1) as usize));
-        }
-        if total > MAX_REFERENCES {
-            return Err(TooLarge);
-        }
         references.extend(total, 0);
         let (Some(offsets), Some(references)) = (offsets.since(first as usize), references.since(from)) else {
             return Ok(slot);

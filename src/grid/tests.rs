@@ -111,3 +111,19 @@ fn a_slot_that_was_never_filled_is_no_grid_but_one_over_nothing_is() {
     let slot = GridSlot::build(0, |_| Aabb::EMPTY, 4.0_f32, 100, &mut filled, &mut none).unwrap();
     assert!(Grid::new(&slot, filled.finish(), &[]).is_some());
 }
+
+/// Patches of a net whose weights differ by 1e9 have boxes as large as the surface: each lay in most voxels, and the grid was
+/// refused for its references.
+#[test]
+fn items_as_large_as_the_grid_make_it_coarse_but_never_too_large() {
+    let item = Aabb { low: [0.0; 3], high: [1.0; 3] };
+    let count = 5_000;
+    let (mut offsets, mut references) = (Arena::new(&mut []), Arena::new(&mut []));
+    let slot = GridSlot::build(count, |_| item, 3.0, 1 << 22, &mut offsets, &mut references).unwrap();
+    let voxels = slot.counts.iter().product::<u32>() as usize;
+    assert_eq!(references.need().needed, count * voxels);
+    assert!(count * voxels <= MAX_REFERENCES && 8 * count * voxels > MAX_REFERENCES, "{voxels}");
+    assert_eq!(offsets.need().needed, voxels + 1);
+    let too_many = GridSlot::build(MAX_REFERENCES + 1, |_| item, 3.0, 1, &mut offsets, &mut references);
+    assert_eq!(too_many, Err(TooLarge));
+}
