@@ -331,6 +331,19 @@ pub struct Solver<'a, 's, 'm, P: Point> {
     /// Whether `flat` holds the net: it is projected for the first start, since most rays that reach a surface's box give
     /// none.
     projected: bool,
+    /// How much of the surface the ray's fallback has decided.
+    pub(crate) decided: Decided,
+}
+
+/// How much of a surface has been searched for all roots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Decided {
+    /// Nothing.
+    Nothing,
+    /// One patch.
+    Patch,
+    /// All of it.
+    Surface,
 }
 
 impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
@@ -343,7 +356,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         flat: &'a mut VecView<P::Flat>,
         basis: &'a mut BasisView<'s, P::Scalar>,
     ) -> Self {
-        Solver { surface: *surface, planes, limits, flat, basis, projected: false }
+        Solver { surface: *surface, planes, limits, flat, basis, projected: false, decided: Decided::Nothing }
     }
 
     /// Solves from `start`; `None` if the iteration leads to no root, which does not prove that there is none.
@@ -400,7 +413,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     #[inline(always)]
     pub(crate) fn turn_to(&mut self, surface: &Surface<'m, P>) {
         if self.surface.number != surface.number {
-            (self.surface, self.projected) = (*surface, false);
+            (self.surface, self.projected, self.decided) = (*surface, false, Decided::Nothing);
         }
     }
 

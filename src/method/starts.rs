@@ -7,7 +7,7 @@
 use crate::contract::{Single, single_of};
 use crate::fallback::Fallback;
 use crate::limits::{Acceptance, Limit, Work};
-use crate::newton::{Alone, Root, Solver};
+use crate::newton::{Alone, Decided, Root, Solver};
 use crate::patch::{Crossing, Patch};
 use crate::point::Point;
 use crate::region::Region;
@@ -42,7 +42,9 @@ pub(super) fn roots_of_patch<P: Point, F: Fallback<P>>(
     Ok(())
 }
 
-/// The root that a patch's starts lead to and, unless that is proved to be all, the roots of the patch.
+/// The root that a patch's starts lead to and, unless that is proved to be all, the roots of the patch: of the second patch
+/// that is handed over those of the whole surface. A pole's patches, or those along a fold, would else be handed over one by
+/// one, and all be clipped down to the same points.
 #[inline(never)]
 fn proved_roots<P: Point, F: Fallback<P>>(
     solver: &mut Solver<'_, '_, '_, P>,
@@ -53,6 +55,9 @@ fn proved_roots<P: Point, F: Fallback<P>>(
     work: &mut Work,
     mut found: impl FnMut(Root<P::Scalar>, &mut Work),
 ) -> Result<(), Limit> {
+    if solver.decided == Decided::Surface {
+        return Ok(());
+    }
     let root = from_patch(solver, patch, crossing, first, work)?;
     if let Some(root) = root {
         found(root, work);
@@ -66,6 +71,11 @@ fn proved_roots<P: Point, F: Fallback<P>>(
         Single::Root(root, _) => found(root, work),
         Single::Unproved => {
             work.handed_over += 1;
+            let (decided, region) = match solver.decided {
+                Decided::Nothing => (Decided::Patch, region),
+                _ => (Decided::Surface, Region::WHOLE),
+            };
+            solver.decided = decided;
             fallback.roots(&solver.surface, solver.planes, region, solver.limits, work, found)?;
         }
     }
