@@ -6,5 +6,6 @@
 pub mod bounds;
 pub mod case;
 pub mod families;
+pub mod judge;
 pub mod run;
 pub mod truth;

@@ -6,8 +6,8 @@ use patchray::limits::Work;
 use serde::{Deserialize, Serialize};
 
 use super::case::{Case, Draw, Family, Shot};
+use super::judge::Judge;
 use super::truth;
-use crate::judge::{Agreement, Truth, allowance};
 use crate::lower::{LowerError, Stages};
 use crate::measure::trace_picture;
 use crate::prepared::Prepared;
@@ -142,7 +142,7 @@ pub fn family(family: &Family, precision: Precision, plan: &Plan, wanted: impl F
                     continue;
                 }
             };
-            judge.add(&answers, score);
+            add(&judge, &answers, score);
             let by_original = original(method)
                 .and_then(|original| originals.iter().find(|(other, _)| *other == original))
                 .map(|(_, outcomes)| outcomes);
@@ -216,109 +216,42 @@ fn most_steps(worst: &Work) -> u64 {
     u64::from(worst.newton_steps) + u64::from(worst.clip_steps)
 }
 
-/// What answers to a case are held against.
-struct Judge<'c> {
-    case: &'c Case,
-    rays: &'c [RayLine],
-    truths: Vec<Truth>,
-    precision: Precision,
-    /// The model's; of a model without extent its largest coordinate, or 1.
-    diagonal: f64,
-}
-
-impl<'c> Judge<'c> {
-    fn new(case: &'c Case, rays: &'c [RayLine], precision: Precision) -> Self {
-        let diagonal = case.model.control_box().map_or(0.0, |bounds| bounds.diagonal());
-        let truths = truth::of_case(case, rays);
-        Judge { case, rays, truths, precision, diagonal: if diagonal > 0.0 { diagonal } else { 1.0 } }
-    }
-
-    /// Whether the truth of a ray is far enough from any other.
-    fn is_judged(&self, truth: &Truth) -> bool {
-        !truth.open && truth.margin >= truth::least_margin(self.precision)
-    }
-
-    fn add(&self, answers: &Answers, score: &mut Score) {
-        score.rays += answers.outcomes.len() as u64;
-        score.beyond += answers.beyond;
-        score.most_steps = score.most_steps.max(answers.most_steps);
-        score.steps = answers.steps.iter().copied().fold(score.steps, u64::max);
-        for ((outcome, truth), ray) in answers.outcomes.iter().zip(&self.truths).zip(self.rays) {
-            if let Outcome::GaveUp { limit, .. } = outcome {
-                *score.gave_up.entry((*limit).to_owned()).or_default() += 1;
-                continue;
-            }
-            if let Outcome::Refused(_) | Outcome::Invalid = outcome {
-                *if truth::is_no_ray(ray) { &mut score.right } else { &mut score.refused } += 1;
-                continue;
-            }
-            if truth::is_no_ray(ray) {
-                score.wrong += 1;
-                continue;
-            }
-            if let Outcome::Hit(found) = outcome {
-                let numbers = [found.t, found.u, found.v];
-                score.not_finite += u64::from(!numbers.iter().all(|x| x.is_finite()));
-                if let Some(surface) = self.case.model.surfaces.get(found.surface).filter(|_| !found.grazing) {
-                    // What t cannot say any better is no fault of the answer.
-                    let off = truth::residual(surface, ray, found) - self.slack(found.t, ray);
-                    score.residual = score.residual.max(off / self.diagonal);
-                }
-            }
-            if !self.is_judged(truth) {
-                score.unjudged += 1;
-                continue;
-            }
-            let agreement = self.agreement(outcome, truth, ray);
-            score.right += agreement.right;
-            score.wrong += agreement.wrong;
-            score.missed += agreement.missed;
-            score.phantom += agreement.phantom;
+/// Adds what became of a case's rays.
+fn add(judge: &Judge, answers: &Answers, score: &mut Score) {
+    score.rays += answers.outcomes.len() as u64;
+    score.beyond += answers.beyond;
+    score.most_steps = score.most_steps.max(answers.most_steps);
+    score.steps = answers.steps.iter().copied().fold(score.steps, u64::max);
+    for ((outcome, truth), ray) in answers.outcomes.iter().zip(&judge.truths).zip(judge.rays) {
+        if let Outcome::GaveUp { limit, .. } = outcome {
+            *score.gave_up.entry((*limit).to_owned()).or_default() += 1;
+            continue;
         }
-    }
-
-    /// The precision's unit of rounding.
-    fn unit(&self) -> f64 {
-        match self.precision {
-            Precision::F64 => f64::EPSILON,
-            Precision::F32 => f64::from(f32::EPSILON),
+        if let Outcome::Refused(_) | Outcome::Invalid = outcome {
+            *if truth::is_no_ray(ray) { &mut score.right } else { &mut score.refused } += 1;
+            continue;
         }
-    }
-
-    /// By how much, as a length, rounding t to the number type can move a point.
-    fn slack(&self, t: f64, ray: &RayLine) -> f64 {
-        let [x, y, z] = ray.direction;
-        4.0 * self.unit() * t.abs() * x.hypot(y).hypot(z)
-    }
-
-    fn agreement(&self, outcome: &Outcome, truth: &Truth, ray: &RayLine) -> Agreement {
-        let mut allowance = allowance(self.precision);
-        let slack = truth.closest.map_or(0.0, |t| self.slack(t, ray)) / self.diagonal;
-        allowance.across += slack;
-        // Where three roots all but fall together, a third of the digits is all that rounding leaves.
-        allowance.most = f64::max(allowance.most, self.unit().cbrt()) + slack;
-        let mut agreement = Agreement::default();
-        agreement.add(outcome, truth, ray.direction, self.diagonal, &allowance);
-        agreement
-    }
-
-    /// Judged rays that are answered in one way and in another: a hit and a miss, or other t than the allowance lets pass.
-    /// Those that either gave up do not count.
-    fn differences(&self, outcomes: &[Outcome], others: &[Outcome]) -> u64 {
-        let pairs = outcomes.iter().zip(others).zip(self.truths.iter().zip(self.rays));
-        let differ = pairs.filter(|((outcome, other), (truth, ray))| {
-            if !self.is_judged(truth) {
-                return false;
+        if truth::is_no_ray(ray) {
+            score.wrong += 1;
+            continue;
+        }
+        if let Outcome::Hit(found) = outcome {
+            let numbers = [found.t, found.u, found.v];
+            score.not_finite += u64::from(!numbers.iter().all(|x| x.is_finite()));
+            if let Some(surface) = judge.case.model.surfaces.get(found.surface).filter(|_| !found.grazing) {
+                // What t cannot say any better is no fault of the answer.
+                let off = truth::residual(surface, ray, found) - judge.slack(found.t, ray);
+                score.residual = score.residual.max(off / judge.diagonal);
             }
-            let closest = match other {
-                Outcome::Hit(found) => Some(found.t),
-                Outcome::Miss => None,
-                _ => return false,
-            };
-            let other = Truth { closest, open: false, ..**truth };
-            let agreement = self.agreement(outcome, &other, ray);
-            agreement.wrong + agreement.missed + agreement.phantom > 0
-        });
-        differ.count() as u64
+        }
+        if !judge.is_judged(truth) {
+            score.unjudged += 1;
+            continue;
+        }
+        let agreement = judge.agreement(outcome, truth, ray);
+        score.right += agreement.right;
+        score.wrong += agreement.wrong;
+        score.missed += agreement.missed;
+        score.phantom += agreement.phantom;
     }
 }

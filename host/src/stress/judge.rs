@@ -1,0 +1,97 @@
+//! Answers to the rays of a case, held against what is true of them.
+
+use super::case::Case;
+use super::truth;
+use crate::judge::{Agreement, Truth, allowance};
+use crate::scanline::Outcome;
+use crate::scene::rays::RayLine;
+use crate::scene::trace::Precision;
+
+/// What answers to a case are held against.
+#[derive(Debug)]
+pub struct Judge<'c> {
+    pub(super) case: &'c Case,
+    pub(super) rays: &'c [RayLine],
+    pub(super) truths: Vec<Truth>,
+    precision: Precision,
+    /// The model's; of a model without extent its largest coordinate, or 1.
+    pub(super) diagonal: f64,
+}
+
+impl<'c> Judge<'c> {
+    /// By what is true of each ray: see [`truth::of_case`].
+    pub fn new(case: &'c Case, rays: &'c [RayLine], precision: Precision) -> Self {
+        Judge::by(case, rays, truth::of_case(case, rays), precision)
+    }
+
+    /// By these truths, one for each ray.
+    pub fn by(case: &'c Case, rays: &'c [RayLine], truths: Vec<Truth>, precision: Precision) -> Self {
+        let diagonal = case.model.control_box().map_or(0.0, |bounds| bounds.diagonal());
+        Judge { case, rays, truths, precision, diagonal: if diagonal > 0.0 { diagonal } else { 1.0 } }
+    }
+
+    /// What is true of a ray, by its place; `None` if there is no such ray.
+    pub fn truth(&self, place: usize) -> Option<&Truth> {
+        self.truths.get(place)
+    }
+
+    /// Whether an answer to the ray in this place is wrong, and the truth sure enough to say so. One that was given up, or
+    /// refused, is not wrong.
+    pub fn is_lost(&self, place: usize, outcome: &Outcome) -> bool {
+        let (Some(truth), Some(ray)) = (self.truths.get(place), self.rays.get(place)) else {
+            return false;
+        };
+        let agreement = self.agreement(outcome, truth, ray);
+        self.is_judged(truth) && agreement.wrong + agreement.missed + agreement.phantom > 0
+    }
+
+    /// Whether the truth of a ray is far enough from any other.
+    pub(super) fn is_judged(&self, truth: &Truth) -> bool {
+        !truth.open && truth.margin >= truth::least_margin(self.precision)
+    }
+
+    /// The precision's unit of rounding.
+    fn unit(&self) -> f64 {
+        match self.precision {
+            Precision::F64 => f64::EPSILON,
+            Precision::F32 => f64::from(f32::EPSILON),
+        }
+    }
+
+    /// By how much, as a length, rounding t to the number type can move a point.
+    pub(super) fn slack(&self, t: f64, ray: &RayLine) -> f64 {
+        let [x, y, z] = ray.direction;
+        4.0 * self.unit() * t.abs() * x.hypot(y).hypot(z)
+    }
+
+    pub(super) fn agreement(&self, outcome: &Outcome, truth: &Truth, ray: &RayLine) -> Agreement {
+        let mut allowance = allowance(self.precision);
+        let slack = truth.closest.map_or(0.0, |t| self.slack(t, ray)) / self.diagonal;
+        allowance.across += slack;
+        // Where three roots all but fall together, a third of the digits is all that rounding leaves.
+        allowance.most = f64::max(allowance.most, self.unit().cbrt()) + slack;
+        let mut agreement = Agreement::default();
+        agreement.add(outcome, truth, ray.direction, self.diagonal, &allowance);
+        agreement
+    }
+
+    /// Judged rays that are answered in one way and in another: a hit and a miss, or other t than the allowance lets pass.
+    /// Those that either gave up do not count.
+    pub(super) fn differences(&self, outcomes: &[Outcome], others: &[Outcome]) -> u64 {
+        let pairs = outcomes.iter().zip(others).zip(self.truths.iter().zip(self.rays));
+        let differ = pairs.filter(|((outcome, other), (truth, ray))| {
+            if !self.is_judged(truth) {
+                return false;
+            }
+            let closest = match other {
+                Outcome::Hit(found) => Some(found.t),
+                Outcome::Miss => None,
+                _ => return false,
+            };
+            let other = Truth { closest, open: false, ..**truth };
+            let agreement = self.agreement(outcome, &other, ray);
+            agreement.wrong + agreement.missed + agreement.phantom > 0
+        });
+        differ.count() as u64
+    }
+}

@@ -1,0 +1,70 @@
+//! Coherence memory of any bits: coherent and original methods agree where all that is answered is proved.
+
+use crate::bytes::Bytes;
+use crate::claims::{in_range, on_the_ray, within_limits, within_worst_case};
+use crate::common::Kind;
+use crate::input::{Case, OfKind, interval, limits, subdivision, with_kind};
+use crate::lane::{Lane, Way};
+use crate::ready::prepare;
+use crate::scribble::scribble;
+use crate::truth::{alike, none_lost, outcome};
+use patchray::limits::{Acceptance, Limits};
+use patchray::scalar::Scalar;
+
+pub(crate) fn check(bytes: &[u8]) {
+    let mut bytes = Bytes::new(bytes);
+    let case = Case::tame(&mut bytes, 3, 6);
+    with_kind(&case, bytes, Coherence);
+}
+
+struct Coherence;
+
+impl OfKind for Coherence {
+    fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
+        let surfaces = case.model.surfaces.len();
+        let Some(prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes)) else {
+            return;
+        };
+        let mut lane = Lane::<P>::new(surfaces);
+        let mut scan_line = bytes.count();
+        let limits = Limits { acceptance: Acceptance::Proved, ..limits::<P::Scalar>(&mut bytes) };
+        let mut line = case.ray(&mut bytes);
+        for _ in 0..1 + bytes.below(5) {
+            match bytes.below(4) {
+                0 => line = case.ray(&mut bytes),
+                // Next to the one before, as along a scan line.
+                1 | 2 => {
+                    let axis = bytes.below(3);
+                    let step = f64::from(bytes.byte() as i8) / 4096.0;
+                    let moved = line.direction[axis] + step * line.direction[(axis + 1) % 3];
+                    line.direction[axis] = crate::input::in_precision(moved, case.precision);
+                }
+                _ => {
+                    scan_line = if bytes.rarely(2) { bytes.count() } else { scan_line };
+                    scribble(&mut bytes, &mut lane.remembered);
+                }
+            }
+            let [origin, direction] = [line.origin, line.direction].map(|v| v.map(P::Scalar::from_f64));
+            let (Ok(ray), Some(interval)) = (prepared.scene().ray(origin, direction), interval(&line)) else {
+                continue;
+            };
+            let range = [interval.min(), interval.max()];
+            let kept = lane.remembered.clone();
+            let mut answers = Vec::new();
+            for way in [Way::Clipping, Way::NewtonProving, Way::NewtonCoherentProving, Way::ClippingCoherent] {
+                lane.remembered.clone_from(&kept);
+                let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, &limits);
+                within_limits(&lane.work, &limits, way);
+                within_worst_case(&lane.work, &limits, &way.extent(&prepared, limits.acceptance), way);
+                for hit in answer.into_iter().flatten() {
+                    in_range(&hit, range, surfaces, way);
+                    on_the_ray(&hit, case, &line, &limits, way);
+                }
+                answers.push((format!("{way:?}"), outcome(&prepared, &answer)));
+            }
+            if answers.iter().any(|(_, answer)| !alike(case, answer, &answers[0].1)) {
+                none_lost(case, &line, &answers);
+            }
+        }
+    }
+}

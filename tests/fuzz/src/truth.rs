@@ -1,0 +1,73 @@
+//! Answers held against the oracle.
+//!
+//! An answer counts only where the oracle is sure of it by a margin: what a ray moved by a rounding would answer otherwise is no
+//! fault of the method. The quick oracle is asked first; it takes the one in double-double to convict.
+
+use crate::common::{Kind, Prepared};
+use crate::input::Case;
+use crate::lane::Answer;
+use patchray::bernstein::Basis;
+use patchray::scalar::Scalar;
+use patchray_host::judge::Truth;
+use patchray_host::oracle::Oracle;
+use patchray_host::scanline::{Found, Outcome};
+use patchray_host::scene::rays::RayLine;
+use patchray_host::scene::trace::Precision;
+use patchray_host::stress::case::Case as StressCase;
+use patchray_host::stress::judge::Judge;
+
+/// An answer as the harness has it.
+pub(crate) fn outcome<P: Kind>(prepared: &Prepared<P>, answer: &Answer<P::Scalar>) -> Outcome {
+    match answer {
+        Ok(None) => Outcome::Miss,
+        Err(gave_up) => Outcome::GaveUp { limit: gave_up.limit.name(), best: None },
+        Ok(Some(hit)) => {
+            let normal = prepared.scene().normal(hit, &mut Basis::<P::Scalar, 16>::new().view()).ok();
+            Outcome::Hit(Found {
+                t: hit.t.to_f64(),
+                u: hit.u.to_f64(),
+                v: hit.v.to_f64(),
+                surface: hit.surface as usize,
+                normal: normal.map(|normal| normal.map(Scalar::to_f64)),
+                grazing: hit.grazing,
+            })
+        }
+    }
+}
+
+/// No answer is lost: where the oracle is sure of a ray, each is as it says, or was given up. `answers` are named.
+pub(crate) fn none_lost(case: &Case, ray: &RayLine, answers: &[(String, Outcome)]) {
+    let stress = StressCase::of_rays(case.model.clone(), vec![*ray]);
+    let verdict = Oracle::new(&case.model).trace(ray.origin, ray.direction, ray.t_min, ray.t_max);
+    let rays = [*ray];
+    let quick = Judge::by(&stress, &rays, vec![Truth::from(&verdict)], case.precision);
+    if !answers.iter().any(|(_, outcome)| quick.is_lost(0, outcome)) {
+        return;
+    }
+    let sure = Judge::new(&stress, &rays, case.precision);
+    for (name, outcome) in answers {
+        assert!(
+            !sure.is_lost(0, outcome),
+            "{name} answers {outcome:?}, the oracle {:?}; case {:?}, ray {ray:?}, surfaces {:?}",
+            sure.truth(0),
+            (case.precision, case.numbers),
+            case.model.surfaces
+        );
+    }
+}
+
+/// Whether two answers to a ray say the same, as far as it can be told without the oracle; one that was given up says nothing.
+pub(crate) fn alike(case: &Case, one: &Outcome, other: &Outcome) -> bool {
+    match (one, other) {
+        (Outcome::GaveUp { .. }, _) | (_, Outcome::GaveUp { .. }) => true,
+        (Outcome::Hit(one), Outcome::Hit(other)) => {
+            let near = match case.precision {
+                Precision::F64 => 1e-9,
+                Precision::F32 => 1e-5,
+            };
+            (one.t - other.t).abs() <= near * one.t.abs().max(other.t.abs())
+        }
+        (Outcome::Miss, Outcome::Miss) => true,
+        _ => false,
+    }
+}
