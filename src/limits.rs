@@ -23,8 +23,9 @@ pub enum Acceptance {
 /// The bounds of one call: one ray through the whole scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits<S> {
-    /// Parameter: evaluations of the surface that one Newton start may take, halved steps included. Starts that succeed
-    /// need 2 to 4; each one more is paid only by starts that fail, and now and then saves one.
+    /// Parameter: evaluations of the surface that one Newton start may take, halved steps included, and but one to look at a root
+    /// that a singular Jacobian led to. Starts that succeed need 2 to 4; each one more is paid only by starts that fail, and now
+    /// and then saves one.
     pub newton_iterations: u32,
     /// Parameter: starts per patch, at most 3 (the paper's number): the parallelogram, the entrance, the exit. Fewer is
     /// faster and loses roots at silhouettes.
@@ -152,7 +153,7 @@ impl<S: Scalar> Limits<S> {
             newton_steps: if extent.clipped || self.acceptance == Acceptance::Proved {
                 self.newton_steps
             } else {
-                starts.saturating_mul(self.newton_iterations).min(self.newton_steps)
+                starts.saturating_mul(self.newton_iterations.saturating_add(1)).min(self.newton_steps)
             },
             critical: patches,
             unresolved: patches,

@@ -211,6 +211,12 @@ pub(crate) struct Place<S> {
 }
 
 impl<S: Scalar> Place<S> {
+    /// See [`Local::is_steep`].
+    #[inline(always)]
+    fn is_steep<P: Point<Scalar = S>>(&self, net: &Net<'_, P>, planes: &Planes<S>, limits: &Limits<S>) -> bool {
+        self.local.is_steep(net.degrees(), planes.reach() * weighted::<P>(), limits.tolerance)
+    }
+
     /// The root there; `whole` is the surface's projected net.
     #[inline(always)]
     pub(crate) fn root<P: Point<Scalar = S>>(
@@ -221,8 +227,7 @@ impl<S: Scalar> Place<S> {
         limits: &Limits<S>,
         basis: &mut BasisView<'_, S>,
     ) -> Result<Root<S>, Limit> {
-        let steep = self.local.is_steep(net.degrees(), planes.reach() * weighted::<P>(), limits.tolerance);
-        if !steep {
+        if !self.is_steep(net, planes, limits) {
             return self.shallow_root(net, whole, planes, limits, basis);
         }
         let depth = planes.depth_on(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
@@ -364,7 +369,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     /// The iteration may leave the patch that gave the start: it works on the whole surface.
     pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         match self.iterate(start, work)? {
-            Some(place) => self.root(&place).map(Some),
+            Some(place) => self.root(&place, work),
             None => Ok(None),
         }
     }
@@ -377,18 +382,27 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         work: &mut Work,
     ) -> Result<Option<Followed<P::Scalar>>, Limit> {
         match self.iterate(start, work)? {
-            Some(place) => {
-                let root = self.root(&place)?;
-                Ok(Some((root, place.local)))
-            }
+            Some(place) => Ok(self.root(&place, work)?.map(|root| (root, place.local))),
             None => Ok(None),
         }
     }
 
+    /// The root at a place that the iteration came to, if it is one.
     #[inline(always)]
-    fn root(&mut self, place: &Place<P::Scalar>) -> Result<Root<P::Scalar>, Limit> {
+    fn root(&mut self, place: &Place<P::Scalar>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+        if !place.is_steep(&self.surface.net, self.planes, self.limits) && !self.is_seen(place, work)? {
+            return Ok(None);
+        }
         let flat = self.flat.get(..self.surface.net.points().len()).ok_or(Limit::Scratch)?;
-        place.root(&self.surface.net, flat, self.planes, self.limits, self.basis)
+        place.root(&self.surface.net, flat, self.planes, self.limits, self.basis).map(Some)
+    }
+
+    /// Whether the ray is seen to pass a place, where a step by a Jacobian that may be all rounding led to it, as of a flat net
+    /// seen edge on: the step may be rounding too, and what it leaves is not what Taylor's theorem says.
+    #[cold]
+    #[inline(never)]
+    fn is_seen(&mut self, place: &Place<P::Scalar>, work: &mut Work) -> Result<bool, Limit> {
+        Ok(!place.local.may_be_singular() || self.local(place.at, work)?.distance() <= self.limits.tolerance + noise())
     }
 
     /// The surface at (u, v) to first order.
