@@ -80,5 +80,10 @@ pub(crate) fn on_the_ray<S: Scalar>(hit: &Hit<S>, case: &Case, ray: &RayLine, li
     // Coordinates are scaled to below 1, and to a half at least.
     let allowed = OF_NETS * 2.0 * largest * (tolerance.max(0.0) + rounding) + slack;
     let off = residual(surface, ray, &found);
-    assert!(off <= allowed, "{what:?}: {hit:?} is {off:e} off its ray, {allowed:e} are allowed");
+    assert!(
+        off <= allowed,
+        "{what:?}: {hit:?} is {off:e} off its ray, {allowed:e} are allowed; {:?} {:?} {ray:?} {limits:?} {surface:?}",
+        case.precision,
+        case.numbers
+    );
 }

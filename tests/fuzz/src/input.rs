@@ -242,9 +242,9 @@ fn usual<S: Scalar>() -> Limits<S> {
         patches: 5000,
         voxels: 20_000,
         spans: 20_000,
-        newton_steps: 2000,
-        clip_steps: 2000,
-        bisections: 1000,
+        newton_steps: 1000,
+        clip_steps: 1000,
+        bisections: 500,
         ..Limits::default()
     }
 }
@@ -287,8 +287,8 @@ pub(crate) fn budgets_of<S>(limits: &mut Limits<S>) -> [&mut u32; 9] {
 /// How finely surfaces are subdivided: few patches, so that an input is done with soon.
 pub(crate) fn subdivision<S: Scalar>(bytes: &mut Bytes<'_>) -> Subdivision<S> {
     let flatness = S::from_f64([0.05, 0.2, 0.01, 1.0][bytes.below(4)]);
-    let depth = [3, 14, 2, 1, 0][bytes.below(5)];
-    Subdivision { flatness, depth, patches_per_surface: 300, padding: PADDING }
+    let depth = [2, 14, 3, 1, 0][bytes.below(5)];
+    Subdivision { flatness, depth, patches_per_surface: 100, padding: PADDING }
 }
 
 /// The same by any numbers.
@@ -304,7 +304,7 @@ pub(crate) fn any_subdivision<S: Scalar>(bytes: &mut Bytes<'_>) -> Subdivision<S
         options.padding = bytes.count();
     }
     if bytes.rarely(4) {
-        options.patches_per_surface = bytes.count().min(300);
+        options.patches_per_surface = bytes.count().min(100);
     }
     options
 }

@@ -65,7 +65,16 @@ impl OfKind for Preparation {
         let options = any_subdivision(&mut bytes);
         let with_tree = !bytes.rarely(4);
         let mut cut = PatchRoom { patches: vec![], first: vec![], nodes: vec![], links: vec![] };
-        if !lend(&mut bytes, |sizes| cut.build(&scene, &options, with_tree, sizes)) {
+        let subdivided = if with_tree {
+            lend(&mut bytes, |sizes| cut.build(&scene, &options, true, sizes))
+        } else {
+            lend(&mut bytes, |[patches, first]| match cut.build(&scene, &options, false, [patches, first, 0, 0]) {
+                Stage::Lacks([patches, first, ..]) => Stage::Lacks([patches, first]),
+                Stage::Done => Stage::Done,
+                Stage::Refused => Stage::Refused,
+            })
+        };
+        if !subdivided {
             return;
         }
         let mut grid_options = GridOptions { voxels: VOXELS, ..GridOptions::default() };
