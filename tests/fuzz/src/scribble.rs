@@ -63,7 +63,7 @@ pub(crate) fn scribble<T: Slot>(bytes: &mut Bytes<'_>, slots: &mut [T]) {
             let mut pattern = bytes.array::<16>();
             if pattern[15] & 1 == 0 {
                 let [count, ..] = pattern;
-                pattern = [u32::from(count); 4].map(u32::to_le_bytes).concat().try_into().expect("four times four");
+                pattern = [u32::from(count % 4); 4].map(u32::to_le_bytes).concat().try_into().expect("four times four");
             }
             for at in (0..size).step_by(16) {
                 write(at, &pattern);
