@@ -55,7 +55,7 @@ impl OfKind for Budgets {
                 steps.push((small, answer, work));
             }
             for (limits, answer, _) in &steps {
-                if let Some(hit) = answer.map_or_else(|gave_up| gave_up.best, |hit| hit) {
+                if let Some(hit) = answer.unwrap_or_else(|gave_up| gave_up.best) {
                     in_range(&hit, [interval.min(), interval.max()], surfaces, (way, limits));
                 }
             }

@@ -1,6 +1,6 @@
 //! The methods for rays of no view, with what one thread needs for them.
 
-use crate::common::Prepared;
+use crate::common::{Kind, Prepared};
 use patchray::limits::{Acceptance, Extent, GaveUp, Limits, Work};
 use patchray::method::{ClipScratch, Remembered, Scratch, clipping, clipping_coherent, newton, newton_coherent};
 use patchray::point::Point;
@@ -39,10 +39,7 @@ impl Way {
     }
 
     /// How large a scene is to it.
-    pub(crate) fn extent<P: Point>(self, prepared: &Prepared<P>, acceptance: Acceptance) -> Extent
-    where
-        P: crate::common::Kind,
-    {
+    pub(crate) fn extent<P: Kind>(self, prepared: &Prepared<P>, acceptance: Acceptance) -> Extent {
         let coherent = matches!(self, Way::NewtonCoherent | Way::NewtonCoherentProving | Way::ClippingCoherent);
         let falls_back = matches!(self, Way::NewtonProving | Way::NewtonCoherentProving);
         let clips = matches!(self, Way::Clipping | Way::ClippingCoherent);
@@ -69,7 +66,7 @@ pub(crate) struct Lane<P: Point> {
     pub(crate) work: Work,
 }
 
-impl<P: crate::common::Kind> Lane<P> {
+impl<P: Kind> Lane<P> {
     pub(crate) fn new(surfaces: usize) -> Self {
         Lane {
             newton: Box::new(Scratch::new()),
@@ -130,7 +127,7 @@ impl<P: crate::common::Kind> Lane<P> {
         let (mut hits, mut work) = (heapless::Vec::<_, 40>::new(), [Work::default(); 2]);
         let Lane { newton, clips, .. } = self;
         let (all, any) = match way {
-            Way::Newton | Way::NewtonProving if way == Way::Newton => {
+            Way::Newton => {
                 let scratch = &mut newton.view();
                 (
                     newton::all_hits(&scene, &patches, &tree, ray, interval, limits, scratch, &mut hits, &mut work[0]),

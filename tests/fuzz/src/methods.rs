@@ -7,7 +7,6 @@ use crate::input::{Case, OfKind, any_limits, any_subdivision, interval, with_kin
 use crate::lane::{Lane, Way};
 use crate::ready::prepare;
 use crate::scribble::scribble;
-use patchray::limits::Extent;
 use patchray::scalar::Scalar;
 
 pub(crate) fn check(bytes: &[u8]) {
@@ -40,16 +39,15 @@ impl OfKind for Methods {
                 let extent = way.extent(&prepared, limits.acceptance);
                 within_worst_case(&lane.work, &limits, &extent, way);
                 // What was found before a bound ran out is a root too, if no answer.
-                let found = answer.map_or_else(|gave_up| gave_up.best, |hit| hit);
+                let found = answer.unwrap_or_else(|gave_up| gave_up.best);
                 let lists = lane.all_and_any(way, &prepared, &ray, &interval, &limits);
                 let mut hits: Vec<_> = found.into_iter().collect();
                 if let Some(lists) = lists {
-                    let extent = Extent { ..extent };
                     for work in &lists.work {
                         within_limits(work, &limits, way);
                         within_worst_case(work, &limits, &extent, way);
                     }
-                    hits.extend(lists.any.map_or_else(|gave_up| gave_up.best, |hit| hit));
+                    hits.extend(lists.any.unwrap_or_else(|gave_up| gave_up.best));
                     hits.extend(lists.found);
                     hits.extend(lists.all.map_or_else(|gave_up| gave_up.best, |_| None));
                 }

@@ -42,7 +42,8 @@ fn knots<S: Scalar>(bytes: &mut Bytes<'_>, case: &Case, degree: usize) -> Vec<S>
     };
     let clamped = kind & 16 == 0;
     let mut next = |k: usize| {
-        if !(clamped && (k <= degree || k + degree >= count)) || clamped && k == degree + 1 && k + degree >= count {
+        let at_an_end = k <= degree || k + degree >= count;
+        if !clamped || !at_an_end {
             at = in_precision(at + step(bytes), case.precision);
         }
         at

@@ -90,7 +90,7 @@ impl OfKind for Views {
                 within_limits(&thread.work, &limits, method);
                 within_worst_case(&thread.work, &limits, &extent, method);
                 let line = ray_line(&camera, place, &interval);
-                if let Some(hit) = answer.map_or_else(|gave_up| gave_up.best, |hit| hit) {
+                if let Some(hit) = answer.unwrap_or_else(|gave_up| gave_up.best) {
                     let ahead = interval.min().greater(P::Scalar::ZERO);
                     in_range(&hit, [ahead, interval.max()], surfaces, method);
                     if case.is_tame() {
