@@ -8,6 +8,7 @@ pub const MAX_LEVEL: u32 = 14;
 /// A part of a surface's domain by repeated halving: `[i, i + 1] / 2^level` in each direction, held as `2^level + i`.
 /// Half-open, but for the last one, so that each (u, v) lies in exactly one patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
 pub struct Domain {
     u: u16,
     /// The top bit marks a patch that is not flat: it was kept because the depth ran out.
@@ -19,6 +20,16 @@ const ROUGH: u16 = 1 << 15;
 impl Domain {
     /// The whole surface.
     pub const WHOLE: Self = Domain { u: 1, v: 1 };
+
+    /// The domain that holds these numbers, of u and of v.
+    pub(crate) const fn from_numbers([u, v]: [u16; 2]) -> Self {
+        Domain { u, v }
+    }
+
+    /// What it holds, of u and of v.
+    pub(crate) const fn numbers(self) -> [u16; 2] {
+        [self.u, self.v]
+    }
 
     /// How often it was halved in u and in v.
     pub fn levels(self) -> [u32; 2] {

@@ -22,6 +22,7 @@ pub(crate) const NEAR: u32 = 8;
 
 /// A box with sides along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Aabb<S> {
     /// The corner of least coordinates.
     pub low: [S; 3],
@@ -98,9 +99,8 @@ pub fn exact_origin<S: Scalar>(bounds: &Aabb<S>) -> [S; 3] {
 
 /// The scene's frame. All of the kernel's stored coordinates are in it; rays and hits are in the caller's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Frame<S> {
-    /// Caller's coordinates times 2^`exponent` are the frame's.
-    exponent: i32,
     scale: S,
     unscale: S,
     /// Where the nets' coordinates are 0, in the caller's coordinates.
@@ -111,6 +111,8 @@ pub struct Frame<S> {
     bounds: Aabb<S>,
     /// The diagonal of the unpadded box, in the frame.
     diagonal: S,
+    /// Caller's coordinates times 2^`exponent` are the frame's.
+    exponent: i32,
 }
 
 impl<S: Scalar> Frame<S> {
@@ -138,6 +140,21 @@ impl<S: Scalar> Frame<S> {
     #[must_use]
     pub fn with_origin(self, origin: [S; 3]) -> Self {
         Frame { origin, ..self }
+    }
+
+    /// The frame that holds these numbers. For tables; see [`LAYOUT`](crate::LAYOUT).
+    ///
+    /// They are its scale and the inverse; by coordinate axis, the origin and the least and largest corner of the nets' padded
+    /// box; the nets' largest |coordinate|, and the diagonal of the box in the frame; and [`Frame::exponent`].
+    pub const fn from_numbers(scales: [S; 2], corners: [[S; 3]; 3], sizes: [S; 2], exponent: i32) -> Self {
+        let ([scale, unscale], [origin, low, high], [reach, diagonal]) = (scales, corners, sizes);
+        Frame { exponent, scale, unscale, origin, reach, bounds: Aabb { low, high }, diagonal }
+    }
+
+    /// What [`Frame::from_numbers`] takes.
+    pub const fn numbers(&self) -> ([S; 2], [[S; 3]; 3], [S; 2], i32) {
+        let corners = [self.origin, self.bounds.low, self.bounds.high];
+        ([self.scale, self.unscale], corners, [self.reach, self.diagonal], self.exponent)
     }
 
     /// The k by which coordinates are scaled: a coordinate in the frame is the nets' times 2^k.

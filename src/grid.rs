@@ -66,6 +66,23 @@ impl<S: Scalar> GridSlot<S> {
         first_reference: 0,
     };
 
+    /// The slot that holds these numbers. For tables; see [`LAYOUT`](crate::LAYOUT).
+    ///
+    /// They are, by coordinate axis, the box's least and largest corner, the voxels' sides and their inverses; then the number
+    /// of voxels along each axis, and the first of the grid's offsets and of its references.
+    pub const fn from_numbers(lengths: [[S; 3]; 4], numbers: [u32; 5]) -> Self {
+        let [low, high, cell, inverse_cell] = lengths;
+        let [x, y, z, first, first_reference] = numbers;
+        GridSlot { bounds: Aabb { low, high }, cell, inverse_cell, counts: [x, y, z], first, first_reference }
+    }
+
+    /// What [`GridSlot::from_numbers`] takes.
+    pub const fn numbers(&self) -> ([[S; 3]; 4], [u32; 5]) {
+        let [x, y, z] = self.counts;
+        let lengths = [self.bounds.low, self.bounds.high, self.cell, self.inverse_cell];
+        (lengths, [x, y, z, self.first, self.first_reference])
+    }
+
     /// The most voxels that one line can pass.
     pub fn longest_walk(&self) -> u32 {
         self.counts.iter().fold(0, |sum: u32, &n| sum.saturating_add(n))
@@ -324,7 +341,7 @@ pub struct Grids<'m, S> {
 
 impl<'m, S: Scalar> Grids<'m, S> {
     /// The view of memory that was filled before, such as a table in flash.
-    pub fn new(grids: &'m [GridSlot<S>], offsets: &'m [u32], references: &'m [u32]) -> Self {
+    pub const fn new(grids: &'m [GridSlot<S>], offsets: &'m [u32], references: &'m [u32]) -> Self {
         Grids { grids, offsets, references }
     }
 

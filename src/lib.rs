@@ -53,7 +53,19 @@
 //!
 //! A B-spline surface is cut into Bézier surfaces first, likewise in lent memory: see [`pieces`].
 //!
+//! What was prepared elsewhere can be lent as tables: each kind of slot is made from its numbers by a `const fn`
+//! `from_numbers`, and tells them by `numbers`; `patchray bake` of the harness writes such tables as source. [`LAYOUT`] says
+//! what the numbers mean.
+//!
 //! The modules stand in the order in which data flows; each knows only those above it.
+
+/// The version of what slots hold: of the order and the meaning of the numbers that the slots' `from_numbers` take. Tables
+/// that were written for another version are not to be read; those that `patchray bake` writes then do not compile:
+///
+/// ```compile_fail
+/// const _: () = assert!(patchray::LAYOUT == 0, "these tables were baked for another version of patchray");
+/// ```
+pub const LAYOUT: u32 = 1;
 
 pub mod scalar;
 

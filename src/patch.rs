@@ -40,6 +40,16 @@ pub struct Patch<S> {
 
 pub(crate) const SIDE_STEPS: u32 = 2048;
 
+/// The two numbers in a word, that of the lower half first.
+const fn halves(word: u32) -> [u16; 2] {
+    [word as u16, (word >> 16) as u16]
+}
+
+/// A word of two numbers.
+const fn word([low, high]: [u16; 2]) -> u32 {
+    low as u32 | (high as u32) << 16
+}
+
 /// How a ray passes a box: the projected parts and their cross products.
 #[derive(Clone, Copy, Debug)]
 pub struct Crossing<S> {
@@ -62,7 +72,7 @@ pub struct Patches<'m, S> {
 
 impl<'m, S: Scalar> Patches<'m, S> {
     /// The view of memory that was filled before, such as a table in flash.
-    pub fn new(patches: &'m [Patch<S>], first: &'m [u32]) -> Self {
+    pub const fn new(patches: &'m [Patch<S>], first: &'m [u32]) -> Self {
         Patches { patches, first }
     }
 
@@ -105,6 +115,18 @@ pub struct Pierce<S> {
 impl<S: Scalar> Parallelepiped<S> {
     /// What a slot holds before it is filled.
     pub const EMPTY: Self = Parallelepiped { axes: [[S::ZERO; 4]; 3] };
+
+    /// The slot that holds these numbers. For tables; see [`LAYOUT`](crate::LAYOUT).
+    ///
+    /// They are, for each coordinate axis in turn, those of e1, e2, the centre and e3.
+    pub const fn from_numbers(axes: [[S; 4]; 3]) -> Self {
+        Parallelepiped { axes }
+    }
+
+    /// What [`Parallelepiped::from_numbers`] takes.
+    pub const fn numbers(&self) -> [[S; 4]; 3] {
+        self.axes
+    }
 
     pub(crate) fn new(centre: S::Vec3, edges: [S::Vec3; 3]) -> Self {
         let [c, e1, e2, e3] = [centre, edges[0], edges[1], edges[2]].map(Vector3::to_array);
@@ -231,6 +253,20 @@ impl<S: Scalar> Patch<S> {
     /// What a slot holds before it is filled.
     pub const EMPTY: Self =
         Patch { bounds: Parallelepiped::EMPTY, stray: S::ZERO, sides: [0; 2], domain: Domain::WHOLE };
+
+    /// The slot that holds these numbers. For tables; see [`LAYOUT`](crate::LAYOUT).
+    ///
+    /// After the box's come the most by which derivatives stray, then two words of two numbers each, the first in the lower
+    /// half: how much longer the box is than the parallelogram, along v1 and v2; and the domain, in u and v.
+    pub const fn from_numbers(bounds: [[S; 4]; 3], stray: S, [sides, domain]: [u32; 2]) -> Self {
+        let bounds = Parallelepiped::from_numbers(bounds);
+        Patch { bounds, stray, sides: halves(sides), domain: Domain::from_numbers(halves(domain)) }
+    }
+
+    /// What [`Patch::from_numbers`] takes.
+    pub const fn numbers(&self) -> ([[S; 4]; 3], S, [u32; 2]) {
+        (self.bounds.numbers(), self.stray, [word(self.sides), word(self.domain.numbers())])
+    }
 
     /// The enclosing parallelepiped.
     pub fn bounds(&self) -> &Parallelepiped<S> {

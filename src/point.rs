@@ -53,6 +53,16 @@ impl<S: Scalar> Weighted<S> {
         let [x, y, z] = position;
         Weighted([x * weight, y * weight, z * weight, weight])
     }
+
+    /// The point that holds these numbers: wx, wy, wz and w. For tables; see [`LAYOUT`](crate::LAYOUT).
+    pub const fn from_numbers(numbers: [S; 4]) -> Self {
+        Weighted(numbers)
+    }
+
+    /// What it holds: wx, wy, wz and w.
+    pub const fn numbers(&self) -> [S; 4] {
+        self.0
+    }
 }
 
 /// A control point projected on a ray's two planes.

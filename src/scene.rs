@@ -33,6 +33,19 @@ impl<S: Scalar> SurfaceSlot<S> {
     /// What a slot holds before it is filled.
     pub const EMPTY: Self =
         SurfaceSlot { bounds: Aabb::ORIGIN, bend: [S::ZERO; 3], first: 0, degree_u: 0, degree_v: 0 };
+
+    /// The slot that holds these numbers. For tables; see [`LAYOUT`](crate::LAYOUT).
+    ///
+    /// They are the box's least and largest corner and [`Net::bend`]; then the first of its control points, and the degrees in
+    /// u and v.
+    pub const fn from_numbers([low, high, bend]: [[S; 3]; 3], [first, degree_u, degree_v]: [u32; 3]) -> Self {
+        SurfaceSlot { bounds: Aabb { low, high }, bend, first, degree_u, degree_v }
+    }
+
+    /// What [`SurfaceSlot::from_numbers`] takes.
+    pub const fn numbers(&self) -> ([[S; 3]; 3], [u32; 3]) {
+        ([self.bounds.low, self.bounds.high, self.bend], [self.first, self.degree_u, self.degree_v])
+    }
 }
 
 /// Lent memory for a scene.
@@ -116,6 +129,23 @@ pub struct SceneHeader<S> {
     grid: GridSlot<S>,
 }
 
+impl<S: Scalar> SceneHeader<S> {
+    /// The header of a scene with this frame, and this grid over its surfaces. For tables; see [`LAYOUT`](crate::LAYOUT).
+    pub const fn new(frame: Frame<S>, grid: GridSlot<S>) -> Self {
+        SceneHeader { frame, grid }
+    }
+
+    /// The scene's frame.
+    pub const fn frame(&self) -> &Frame<S> {
+        &self.frame
+    }
+
+    /// The grid over the surfaces.
+    pub const fn grid(&self) -> &GridSlot<S> {
+        &self.grid
+    }
+}
+
 /// Surfaces with a grid over them: a view of lent memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'m, P: Point> {
@@ -181,7 +211,7 @@ impl<'m, P: Point> Scene<'m, P> {
     }
 
     /// The view of memory that was filled before, such as a table in flash, with the header of the scene that filled it.
-    pub fn new(
+    pub const fn new(
         header: SceneHeader<P::Scalar>,
         points: &'m [P],
         surfaces: &'m [SurfaceSlot<P::Scalar>],

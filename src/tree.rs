@@ -33,7 +33,7 @@ pub struct Descent<'m, S> {
 
 impl<'m, S: Scalar> Tree<'m, S> {
     /// The view of memory that was filled before, such as a table in flash.
-    pub fn new(nodes: &'m [Parallelepiped<S>], links: &'m [u32]) -> Self {
+    pub const fn new(nodes: &'m [Parallelepiped<S>], links: &'m [u32]) -> Self {
         Tree { nodes, links }
     }
 

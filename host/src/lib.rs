@@ -1,4 +1,5 @@
 //! The host side of `patchray`: files in, pictures and numbers out.
+pub mod bake;
 pub mod batch;
 pub mod cmd;
 pub mod judge;

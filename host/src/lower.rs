@@ -324,7 +324,51 @@ impl<P: FromFile> Lowered<P> {
     }
 }
 
+/// The filled slots of a lowered scene, by kind: see [`SceneMemory`], [`PatchMemory`], [`TreeMemory`] and [`GridMemory`].
+#[derive(Clone, Copy, Debug)]
+pub struct FilledSlots<'l, P: Point> {
+    /// Control points.
+    pub points: &'l [P],
+    /// Surfaces.
+    pub surfaces: &'l [SurfaceSlot<P::Scalar>],
+    /// Offsets of the grid over surfaces.
+    pub offsets: &'l [u32],
+    /// References of that grid.
+    pub references: &'l [u32],
+    /// Patches.
+    pub patches: &'l [Patch<P::Scalar>],
+    /// Where each surface's patches begin.
+    pub first: &'l [u32],
+    /// Inner nodes of the trees.
+    pub nodes: &'l [Parallelepiped<P::Scalar>],
+    /// Links of the trees.
+    pub links: &'l [u32],
+    /// Grids over patches.
+    pub grids: &'l [GridSlot<P::Scalar>],
+    /// Offsets of those grids.
+    pub grid_offsets: &'l [u32],
+    /// References of those grids.
+    pub grid_references: &'l [u32],
+}
+
 impl<P: Point> Lowered<P> {
+    /// All filled slots; those of stages that were not built are none.
+    pub fn slots(&self) -> FilledSlots<'_, P> {
+        FilledSlots {
+            points: &self.points,
+            surfaces: &self.surfaces,
+            offsets: &self.offsets,
+            references: &self.references,
+            patches: &self.patches,
+            first: &self.first,
+            nodes: &self.nodes,
+            links: &self.links,
+            grids: &self.grids,
+            grid_offsets: &self.grid_offsets,
+            grid_references: &self.grid_references,
+        }
+    }
+
     /// The scene.
     pub fn scene(&self) -> Scene<'_, P> {
         Scene::new(self.header, &self.points, &self.surfaces, &self.offsets, &self.references)

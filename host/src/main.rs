@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
-use patchray_host::cmd::{Failure, demo, info, query, render, report, stress, study, tables};
+use patchray_host::cmd::{Failure, bake, demo, info, query, render, report, stress, study, tables};
 
 /// Traces rays against Bézier surfaces themselves, without tessellation.
 ///
@@ -29,6 +29,8 @@ enum Verb {
     Query(query::QueryArgs),
     /// Say what a file holds, and the memory that each method needs for it
     Info(info::InfoArgs),
+    /// Write what a method borrows of a scene as tables in source, so that firmware holds them in flash and prepares nothing
+    Bake(bake::BakeArgs),
     /// Measure the paper's tables on its four scenes, with the paper's figures beside ours
     Tables(tables::TablesArgs),
     /// Measure the error and the run time of every method, with one setting at a time moved from its default
@@ -57,6 +59,7 @@ fn main() -> ExitCode {
         Some(Verb::Render(args)) => render::run(args),
         Some(Verb::Query(args)) => query::run(args),
         Some(Verb::Info(args)) => info::run(args),
+        Some(Verb::Bake(args)) => bake::run(args),
         Some(Verb::Tables(args)) => tables::run(args),
         Some(Verb::Study(args)) => study::run(args),
         Some(Verb::Report(args)) => report::run(args),

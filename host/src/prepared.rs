@@ -3,6 +3,7 @@
 use patchray::limits::Work;
 use patchray::point::{Plain, Point, Weighted};
 
+use crate::bake::Baked;
 use crate::lower::{LowerError, Lowered, Stages, unfit};
 use crate::memory::Bytes;
 use crate::method::in_view::{ClippingPredicted, NewtonPredicted, ViewMethod};
@@ -207,6 +208,15 @@ impl Prepared {
     /// The same for a ray of a view.
     pub fn worst_case_in_view(&self, settings: &Settings) -> Work {
         any!(self, lowered => lowered.worst_case_in_view(settings))
+    }
+
+    /// What a method borrows of it as tables: its stages have to have been built.
+    pub fn baked(&self, method: Which) -> Baked {
+        let precision = match self {
+            Prepared::PlainF32(_) | Prepared::WeightedF32(_) => Precision::F32,
+            Prepared::PlainF64(_) | Prepared::WeightedF64(_) => Precision::F64,
+        };
+        any!(self, lowered => Baked::of(lowered, method, precision))
     }
 
     /// The number of surfaces.

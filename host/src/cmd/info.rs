@@ -5,7 +5,7 @@
 //! the Bézier surfaces that it was cut into; `b_splines`, a list of them with `file` and the fields of [`SplineSummary`];
 //! `polygons`, the number of a scene's; `control_box` (`min`, `max`; `null` without surfaces), `diagonal`, `flatness` and
 //! `grid_density` (the ones in effect), and `memory`: for each precision `patches` and `preparation_scratch_bytes` (while the
-//! scene is built), and under `methods` for each method `arena_bytes` (lent for the scene), `arena_bytes_by_kind`,
+//! scene is built), and under `methods` for each method `baked_bytes` (of the tables that `patchray bake` writes), `arena_bytes` (lent for the scene), `arena_bytes_by_kind`,
 //! `coherence_bytes_per_thread`, `scratch_bytes_per_thread`, all for rays of any kind and not there for a method that needs
 //! those of a view; and `view`, with the same fields and `line_bytes_per_thread_at_most`, for the rays of one view: of a
 //! picture, `--stats` says how many bytes its scan lines take. A precision that cannot hold the model has `refused`, the
@@ -94,6 +94,7 @@ enum Memory {
 
 #[derive(Clone, Debug, Serialize)]
 struct MethodMemory {
+    baked_bytes: u64,
     #[serde(flatten)]
     rays: Option<RaysMemory>,
     view: Option<ViewMemory>,
@@ -254,7 +255,8 @@ impl Info {
                 }
             };
             line(format_args!("\n{precision}: {patches} patches; scratch while building {preparation} bytes"));
-            for (method, MethodMemory { rays, view }) in methods {
+            for (method, MethodMemory { baked_bytes, rays, view }) in methods {
+                line(format_args!("  {method}, baked: {baked_bytes} bytes of tables"));
                 let mut part = |what: &str, rays: &RaysMemory, most: Option<u64>| {
                     line(format_args!("  {method}{what}: {} bytes for the scene", rays.arena_bytes));
                     for (kind, bytes) in rays.arena_bytes_by_kind.iter() {
@@ -306,7 +308,8 @@ impl Memory {
                 bytes.add_all(&prepared.view_bytes(stages));
                 ViewMemory { rays: RaysMemory::of(bytes, &lane), line_bytes_per_thread_at_most: lane.line }
             });
-            (name(&method), MethodMemory { rays, view })
+            let baked_bytes = prepared.bytes(Stages::of(method)).total();
+            (name(&method), MethodMemory { baked_bytes, rays, view })
         });
         let methods = methods.collect();
         Ok(Memory::Needed {

@@ -1,5 +1,6 @@
 //! The verbs, and how each of them may end.
 
+pub mod bake;
 pub mod demo;
 pub mod info;
 pub mod load;

@@ -12,6 +12,7 @@ use tempfile::TempDir;
 mod all_and_any;
 mod b_splines;
 mod bad_input;
+mod bake;
 mod scenes;
 mod study;
 mod tables;

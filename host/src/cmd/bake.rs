@@ -1,0 +1,57 @@
+//! `patchray bake`: what a method borrows of a scene, as tables in source for firmware.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::load::{self, Loaded};
+use super::{Failure, say};
+use crate::lower::Stages;
+use crate::output;
+use crate::prepared::Prepared;
+use crate::settings::Flags;
+
+/// The command line of `bake`.
+#[derive(Args, Clone, Debug)]
+pub struct BakeArgs {
+    /// A file of surfaces (.bpt, or NURBS-Python's .json), or a scene file (.toml)
+    pub file: PathBuf,
+    /// Write the tables as a Rust module; `-` is standard output
+    #[arg(long, value_name = "FILE", required = true, help_heading = "Output")]
+    pub rust: Option<PathBuf>,
+    /// The common flags.
+    #[command(flatten)]
+    pub flags: Flags,
+}
+
+/// Writes the tables.
+///
+/// # Errors
+/// Flags that do not go together, bad input, too little memory, or an output that cannot be written.
+pub fn run(args: &BakeArgs) -> Result<(), Failure> {
+    let BakeArgs { file, rust, flags } = args;
+    if flags.output.is_some() || flags.stats.is_some() || flags.json {
+        return Err(Failure::Usage {
+            message: "`bake` writes tables alone".to_owned(),
+            help: "name their file with --rust, and ask `info` for their bytes".to_owned(),
+        });
+    }
+    super::check_outputs(rust.as_deref(), &[file], flags)?;
+    let Loaded { model, settings, .. } = load::scene_or_patches(file, flags)?;
+    let prepared = Prepared::build(&model, Stages::of(settings.method), &settings)?;
+    let baked = prepared.baked(settings.method);
+    let name = name(file);
+    if let Some(path) = rust {
+        output::write(path, |out| baked.write_rust(&name, out))?;
+    }
+    if !flags.quiet {
+        say(format_args!("{} bytes of tables for {}", baked.bytes(), settings.method.name()));
+    }
+    Ok(())
+}
+
+/// The file's name without its folder, which is of no use elsewhere, on one line.
+fn name(file: &Path) -> String {
+    let name = file.file_name().map_or("standard input".into(), |name| name.to_string_lossy());
+    name.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
+}
