@@ -21,6 +21,9 @@ impl Domain {
     /// The whole surface.
     pub const WHOLE: Self = Domain { u: 1, v: 1 };
 
+    /// What a slot holds before it is filled: zeros, of which static memory takes no flash.
+    pub(crate) const EMPTY: Self = Domain { u: 0, v: 0 };
+
     /// The domain that holds these numbers, of u and of v.
     pub(crate) const fn from_numbers([u, v]: [u16; 2]) -> Self {
         Domain { u, v }

@@ -39,9 +39,9 @@ pub struct Span<S> {
 }
 
 impl<S: Scalar> Span<S> {
-    /// What a slot holds before it is filled.
+    /// What a slot holds before it is filled: zeros, of which static memory takes no flash.
     pub const EMPTY: Self =
-        Span { x: [S::ZERO; 2], near: S::ZERO, front: S::ZERO, surface: 0, patch: 0, next: NONE, last: 0 };
+        Span { x: [S::ZERO; 2], near: S::ZERO, front: S::ZERO, surface: 0, patch: 0, next: 0, last: 0 };
 
     #[inline(always)]
     fn holds(&self, x: S) -> bool {

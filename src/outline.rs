@@ -16,6 +16,9 @@ pub struct Outline<S> {
 }
 
 impl<S: Scalar> Outline<S> {
+    /// What a slot holds before it is filled: zeros, of which static memory takes no flash.
+    pub(crate) const EMPTY: Self = Outline { low: [S::ZERO; 4], high: [S::ZERO; 4] };
+
     /// Around nothing.
     pub const NOWHERE: Self = Outline { low: [S::INFINITY; 4], high: [S::LEAST; 4] };
 

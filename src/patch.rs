@@ -252,7 +252,7 @@ impl<S: Scalar> Crossing<S> {
 impl<S: Scalar> Patch<S> {
     /// What a slot holds before it is filled.
     pub const EMPTY: Self =
-        Patch { bounds: Parallelepiped::EMPTY, stray: S::ZERO, sides: [0; 2], domain: Domain::WHOLE };
+        Patch { bounds: Parallelepiped::EMPTY, stray: S::ZERO, sides: [0; 2], domain: Domain::EMPTY };
 
     /// The slot that holds these numbers. For tables; see [`LAYOUT`](crate::LAYOUT).
     ///

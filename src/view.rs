@@ -43,7 +43,7 @@ pub struct Sight<S> {
 
 impl<S: Scalar> Sight<S> {
     /// What a slot holds before it is filled.
-    pub const EMPTY: Self = Sight { outline: Outline::NOWHERE, near: S::ZERO };
+    pub const EMPTY: Self = Sight { outline: Outline::EMPTY, near: S::ZERO };
 }
 
 /// Patches of one surface, one after another in memory, whose rows are kept together: the number of them. More make more

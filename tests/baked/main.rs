@@ -5,12 +5,14 @@ use std::path::Path;
 use patchray::frame::Frame;
 use patchray::grid::GridSlot;
 use patchray::limits::{Limits, Work};
-use patchray::method::{Remembered, Scratch, newton_coherent};
+use patchray::line::Span;
+use patchray::method::{Followed, Remembered, Scratch, newton_coherent};
 use patchray::patch::{Parallelepiped, Patch};
 use patchray::point::{Plain, Weighted};
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
 use patchray::scene::{SceneHeader, SurfaceSlot};
+use patchray::view::Sight;
 use patchray_host::lower::{FromFile, Lowered, Preparation, Stages};
 use patchray_host::method::Views;
 use patchray_host::prepared::Prepared;
@@ -94,6 +96,18 @@ fn numbers_keep_their_places() {
     assert_eq!([size_of::<Patch<f32>>(), size_of::<Patch<f64>>()], [13 * 4 + 8, 13 * 8 + 8]);
     assert_eq!([size_of::<SurfaceSlot<f32>>(), size_of::<SurfaceSlot<f64>>()], [12 * 4, 9 * 8 + 16]);
     assert_eq!([size_of::<GridSlot<f32>>(), size_of::<GridSlot<f64>>()], [17 * 4, 12 * 8 + 24]);
+}
+
+/// A static of slots that are not zeros would take flash besides RAM: once a view's memory took a megabyte of it.
+#[test]
+fn empty_slots_are_zeros() {
+    let (span, sight) = (Span::<f32>::EMPTY, Sight::<f32>::EMPTY);
+    let (patch, surface) = (Patch::<f32>::EMPTY, SurfaceSlot::<f32>::EMPTY);
+    let (grid, remembered, followed) = (GridSlot::<f32>::EMPTY, Remembered::<f32>::EMPTY, Followed::<f32>::EMPTY);
+    let shown = format!("{span:?} {sight:?} {patch:?} {surface:?} {grid:?} {remembered:?} {followed:?}");
+    let fields = shown.split(|letter: char| !(letter.is_alphanumeric() || "-.+_".contains(letter)));
+    let numbers: Vec<f64> = fields.filter_map(|field| field.parse().ok()).collect();
+    assert!(numbers.len() > 100 && numbers.iter().all(|number| number.to_bits() == 0), "{shown}");
 }
 
 #[test]
