@@ -237,8 +237,12 @@ fn hull_at_zero<S: Scalar, const N: usize>(
     let degree = S::from_u32(last as u32);
     // A few roundings went into each.
     let slack = S::EPSILON * S::from_u32(4);
-    let from = clear::<S, N>(order, |k| extents[k], error).map_or(S::ZERO, |at| at / degree - slack);
-    let to = clear::<S, N>(order, |k| extents[last - k], error).map_or(S::ONE, |at| S::ONE - (at / degree - slack));
+    // No k is beyond `last`; said again, because where arithmetic is done by calls, closures may be left out of line, and then
+    // this is not seen there.
+    let forward = |k: usize| extents[k.min(N - 1)];
+    let backward = |k: usize| extents[last.wrapping_sub(k).min(N - 1)];
+    let from = clear::<S, N>(order, forward, error).map_or(S::ZERO, |at| at / degree - slack);
+    let to = clear::<S, N>(order, backward, error).map_or(S::ONE, |at| S::ONE - (at / degree - slack));
     let (from, to) = (S::ZERO.greater(from), S::ONE.lesser(to));
     if from < to { Clip::Part([from, to]) } else { Clip::Part([S::ZERO, S::ONE]) }
 }
