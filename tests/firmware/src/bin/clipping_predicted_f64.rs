@@ -1,0 +1,9 @@
+//! The method `clipping-predicted` in f64.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[allow(dead_code)]
+mod tables {
+    include!(concat!(env!("BAKED"), "/clipping-predicted-f64.rs"));
+}
+
+firmware::program!(f64: clipping_predicted over tables);

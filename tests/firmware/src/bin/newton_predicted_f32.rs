@@ -1,0 +1,9 @@
+//! The method `newton-predicted` in f32.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[allow(dead_code)]
+mod tables {
+    include!(concat!(env!("BAKED"), "/newton-predicted-f32.rs"));
+}
+
+firmware::program!(f32: newton_predicted over tables);
