@@ -369,6 +369,12 @@ impl<'m, S: Scalar> Grids<'m, S> {
         Ok(Grids { grids: grids.finish(), offsets: offsets.finish(), references: references.finish() })
     }
 
+    /// How many slots of each kind they take, in the order of [`GridMemory`].
+    #[cfg(feature = "capi")]
+    pub(crate) fn lens(&self) -> [usize; 3] {
+        [self.grids.len(), self.offsets.len(), self.references.len()]
+    }
+
     /// The grid of one surface; `None` if the memory does not hold it.
     #[inline]
     pub fn of_surface(&self, surface: usize) -> Option<Grid<'m, S>> {

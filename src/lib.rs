@@ -1,5 +1,5 @@
 #![no_std]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "capi"), forbid(unsafe_code))]
 //! Rays against Bézier surfaces themselves: no tessellation, no allocator, a bounded amount of work per ray.
 //!
 //! The methods are those of S.-W. Wang, Z.-C. Shih and R.-C. Chang, "An improved rendering technique for ray tracing Bézier
@@ -125,3 +125,6 @@ pub mod view;
 pub mod line;
 
 pub mod method;
+
+#[cfg(feature = "capi")]
+pub mod capi;

@@ -125,8 +125,8 @@ impl core::error::Error for SceneError {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct SceneHeader<S> {
-    frame: Frame<S>,
-    grid: GridSlot<S>,
+    pub(crate) frame: Frame<S>,
+    pub(crate) grid: GridSlot<S>,
 }
 
 impl<S: Scalar> SceneHeader<S> {
@@ -164,21 +164,32 @@ impl<'m, P: Point> Scene<'m, P> {
         options: &SceneOptions<P::Scalar>,
         memory: SceneMemory<'m, P>,
     ) -> Result<Self, SceneError> {
+        Scene::build_from(nets.len(), |k| nets.get(k).copied(), options, memory)
+    }
+
+    /// The same from `count` nets that `net` gives by their numbers, each as often as it is asked for.
+    pub(crate) fn build_from<'n>(
+        count: usize,
+        net: impl Fn(usize) -> Option<Net<'n, P>>,
+        options: &SceneOptions<P::Scalar>,
+        memory: SceneMemory<'m, P>,
+    ) -> Result<Self, SceneError> {
+        let nets = || (0..count).map_while(&net);
         let mut bounds = Aabb::EMPTY;
-        for (surface, net) in (0_u32..).zip(nets) {
+        for (surface, net) in (0_u32..).zip(nets()) {
             Net::checked(net.degree_u(), net.degree_v(), net.points())
                 .map_err(|error| SceneError::Surface { surface, error })?;
-            bounds = bounds.union(control_box(net));
+            bounds = bounds.union(control_box(&net));
         }
         let frame = Frame::new(bounds).with_origin(options.origin);
         let mut points = Arena::new(memory.points);
         let mut surfaces = Arena::new(memory.surfaces);
         let boxes = |k: usize| {
-            let scaled = nets.get(k).map_or(Aabb::EMPTY, control_box);
+            let scaled = net(k).as_ref().map_or(Aabb::EMPTY, control_box);
             let [low, high] = [scaled.low, scaled.high].map(|corner| frame.from_nets(corner));
             Aabb { low, high }.padded(Frame::padding())
         };
-        for (k, net) in nets.iter().enumerate() {
+        for (k, net) in nets().enumerate() {
             let first = u32::try_from(points.len()).map_err(|_| SceneError::TooLarge)?;
             // Weights matter up to a common factor: the largest is brought near 1, exactly.
             let heaviest = net.points().iter().fold(P::Scalar::ZERO, |w, p| w.greater(p.weight()));
@@ -194,7 +205,7 @@ impl<'m, P: Point> Scene<'m, P> {
         }
         let mut offsets = Arena::new(memory.offsets);
         let mut references = Arena::new(memory.references);
-        let grid = GridSlot::build(nets.len(), boxes, options.density, options.voxels, &mut offsets, &mut references)
+        let grid = GridSlot::build(count, boxes, options.density, options.voxels, &mut offsets, &mut references)
             .map_err(|_| SceneError::TooLarge)?;
         let needs = SceneNeeds {
             points: points.need(),
@@ -229,6 +240,12 @@ impl<'m, P: Point> Scene<'m, P> {
     /// What to keep beside the slots, for [`Scene::new`].
     pub fn header(&self) -> SceneHeader<P::Scalar> {
         self.header
+    }
+
+    /// How many slots of each kind it takes, in the order of [`SceneMemory`].
+    #[cfg(feature = "capi")]
+    pub(crate) fn lens(&self) -> [usize; 4] {
+        [self.points.len(), self.surfaces.len(), self.offsets.len(), self.references.len()]
     }
 
     /// The scene's frame.

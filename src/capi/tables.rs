@@ -1,0 +1,132 @@
+//! Tables in lent memory or flash, as the kernel's views of them.
+
+use super::lend::Lending;
+use super::status::{Code, PATCHRAY_LAYOUT_DIFFERS};
+use super::types::*;
+use crate::frame::Frame;
+use crate::grid::{GridSlot, Grids};
+use crate::patch::Patches;
+use crate::point::Point;
+use crate::scalar::Scalar;
+use crate::scene::{Scene, SceneHeader};
+use crate::tree::Tree;
+
+/// What a table is of.
+#[derive(Clone, Copy)]
+pub(super) enum Table {
+    Scene = 1,
+    Patches = 2,
+    Tree = 3,
+    Grids = 4,
+}
+
+/// What stands in a table's `layout`: version, table, precision, and whether there are weights, each in bits of its own.
+pub(super) const fn layout_of<S: Scalar>(table: Table, weighted: bool) -> u32 {
+    PATCHRAY_LAYOUT << 8 | (table as u32) << 4 | (size_of::<S>() as u32 / 8) << 1 | weighted as u32
+}
+
+/// Refuses tables that were made otherwise.
+#[inline(always)]
+fn expect<S: Scalar>(layout: u32, table: Table, weighted: bool) -> Result<(), Code> {
+    if layout == layout_of::<S>(table, weighted) { Ok(()) } else { Err(PATCHRAY_LAYOUT_DIFFERS) }
+}
+
+/// A scene's header in the kernel's words.
+#[inline(always)]
+fn header_of<S: Scalar>(frame: &patchray_frame<S>, grid: &patchray_grid<S>) -> SceneHeader<S> {
+    checked_layouts::<S>();
+    // SAFETY: both are laid out alike, and any bits are valid.
+    let frame = unsafe { core::mem::transmute_copy::<patchray_frame<S>, Frame<S>>(frame) };
+    // SAFETY: likewise.
+    let grid = unsafe { core::mem::transmute_copy::<patchray_grid<S>, GridSlot<S>>(grid) };
+    SceneHeader { frame, grid }
+}
+
+/// The same in those of the C interface.
+pub(super) fn header_in_c<S: Scalar>(header: &SceneHeader<S>) -> (patchray_frame<S>, patchray_grid<S>) {
+    checked_layouts::<S>();
+    let mut frame = patchray_frame { exponent: 0, numbers: [S::ZERO; 13] };
+    let mut grid = patchray_grid { numbers: [S::ZERO; 12], counts: [0; 5] };
+    // SAFETY: both are laid out alike; a write of the kernel's struct leaves no field unset.
+    unsafe { (&raw mut frame).cast::<Frame<S>>().write(header.frame) };
+    // SAFETY: likewise.
+    unsafe { (&raw mut grid).cast::<GridSlot<S>>().write(header.grid) };
+    (frame, grid)
+}
+
+/// # Safety
+/// See [`Lending::read`] and [`Lending::slots`]: of the struct and of the tables that it names.
+#[inline(always)]
+pub(super) unsafe fn scene<'c, P: Point>(
+    lending: &mut Lending,
+    scene: *const patchray_scene<P::Scalar>,
+) -> Result<Scene<'c, P>, Code> {
+    // SAFETY: the caller's.
+    let scene = unsafe { lending.read(scene) }?;
+    expect::<P::Scalar>(scene.layout, Table::Scene, P::RATIONAL)?;
+    let header = header_of(&scene.frame, &scene.grid);
+    // SAFETY: the caller's.
+    let points = unsafe { lending.slots(scene.points, scene.points_len) }?;
+    // SAFETY: likewise.
+    let surfaces = unsafe { lending.slots(scene.surfaces, scene.surfaces_len) }?;
+    // SAFETY: likewise.
+    let offsets = unsafe { lending.slots(scene.offsets, scene.offsets_len) }?;
+    // SAFETY: likewise.
+    let references = unsafe { lending.slots(scene.references, scene.references_len) }?;
+    Ok(Scene::new(header, points, surfaces, offsets, references))
+}
+
+/// The patches, and of how many surfaces they say to be.
+///
+/// # Safety
+/// As for [`scene`].
+#[inline(always)]
+pub(super) unsafe fn patches<'c, S: Scalar>(
+    lending: &mut Lending,
+    patches: *const patchray_patches<S>,
+) -> Result<(Patches<'c, S>, usize), Code> {
+    // SAFETY: the caller's.
+    let patches = unsafe { lending.read(patches) }?;
+    expect::<S>(patches.layout, Table::Patches, false)?;
+    // SAFETY: the caller's.
+    let slots = unsafe { lending.slots(patches.patches, patches.patches_len) }?;
+    // SAFETY: likewise.
+    let first = unsafe { lending.slots(patches.first, patches.first_len) }?;
+    Ok((Patches::new(slots, first), patches.first_len.saturating_sub(1)))
+}
+
+/// # Safety
+/// As for [`scene`].
+#[inline(always)]
+pub(super) unsafe fn tree<'c, S: Scalar>(
+    lending: &mut Lending,
+    tree: *const patchray_tree<S>,
+) -> Result<Tree<'c, S>, Code> {
+    // SAFETY: the caller's.
+    let tree = unsafe { lending.read(tree) }?;
+    expect::<S>(tree.layout, Table::Tree, false)?;
+    // SAFETY: the caller's.
+    let nodes = unsafe { lending.slots(tree.nodes, tree.nodes_len) }?;
+    // SAFETY: likewise.
+    let links = unsafe { lending.slots(tree.links, tree.links_len) }?;
+    Ok(Tree::new(nodes, links))
+}
+
+/// # Safety
+/// As for [`scene`].
+#[inline(always)]
+pub(super) unsafe fn grids<'c, S: Scalar>(
+    lending: &mut Lending,
+    grids: *const patchray_grids<S>,
+) -> Result<Grids<'c, S>, Code> {
+    // SAFETY: the caller's.
+    let grids = unsafe { lending.read(grids) }?;
+    expect::<S>(grids.layout, Table::Grids, false)?;
+    // SAFETY: the caller's.
+    let slots = unsafe { lending.slots(grids.grids, grids.grids_len) }?;
+    // SAFETY: likewise.
+    let offsets = unsafe { lending.slots(grids.offsets, grids.offsets_len) }?;
+    // SAFETY: likewise.
+    let references = unsafe { lending.slots(grids.references, grids.references_len) }?;
+    Ok(Grids::new(slots, offsets, references))
+}
