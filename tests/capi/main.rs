@@ -1,0 +1,11 @@
+//! The interface for programs in C, called from Rust: the same answers as Rust's own, and a code for every wrong input.
+//!
+//! Its programs in C are built and run by `tests/capi/run`.
+#![allow(unsafe_code)] // What is tested takes addresses.
+#![allow(unreachable_pub)] // A program of its own.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod errors;
+mod lent;
+mod same_bits;
