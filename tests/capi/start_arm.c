@@ -45,7 +45,11 @@ void reset(void)
     leave((uint32_t)main());
 }
 
-__attribute__((section(".vectors"), used)) static const void *const vectors[16] = {
-    &stack_top, (const void *)reset, (const void *)fault, (const void *)fault, (const void *)fault, (const void *)fault,
-    (const void *)fault,
+struct vectors {
+    const uint32_t *stack;
+    void (*handlers[15])(void);
+};
+
+__attribute__((section(".vectors"), used)) static const struct vectors vectors = {
+    &stack_top, {reset, fault, fault, fault, fault, fault},
 };
