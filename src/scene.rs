@@ -125,8 +125,8 @@ impl core::error::Error for SceneError {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct SceneHeader<S> {
-    pub(crate) frame: Frame<S>,
-    pub(crate) grid: GridSlot<S>,
+    frame: Frame<S>,
+    grid: GridSlot<S>,
 }
 
 impl<S: Scalar> SceneHeader<S> {

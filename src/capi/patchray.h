@@ -299,10 +299,10 @@ typedef struct {
 
 // The scale of a scene's coordinates.
 typedef struct {
-  // The power of two.
-  int32_t exponent;
   // The scale and its inverse, the origin, the largest coordinate, the box, its diagonal.
   float numbers[13];
+  // The power of two that the scale is.
+  int32_t exponent;
 } patchray_frame_f32;
 
 // The grid over a surface's patches, or over the scene's surfaces: a slot of its table.
@@ -608,10 +608,10 @@ typedef struct {
 
 // The scale of a scene's coordinates.
 typedef struct {
-  // The power of two.
-  int32_t exponent;
   // The scale and its inverse, the origin, the largest coordinate, the box, its diagonal.
   double numbers[13];
+  // The power of two that the scale is.
+  int32_t exponent;
 } patchray_frame_f64;
 
 // The grid over a surface's patches, or over the scene's surfaces: a slot of its table.

@@ -39,18 +39,18 @@ fn header_of<S: Scalar>(frame: &patchray_frame<S>, grid: &patchray_grid<S>) -> S
     let frame = unsafe { core::mem::transmute_copy::<patchray_frame<S>, Frame<S>>(frame) };
     // SAFETY: likewise.
     let grid = unsafe { core::mem::transmute_copy::<patchray_grid<S>, GridSlot<S>>(grid) };
-    SceneHeader { frame, grid }
+    SceneHeader::new(frame, grid)
 }
 
 /// The same in those of the C interface.
 pub(super) fn header_in_c<S: Scalar>(header: &SceneHeader<S>) -> (patchray_frame<S>, patchray_grid<S>) {
     checked_layouts::<S>();
-    let mut frame = patchray_frame { exponent: 0, numbers: [S::ZERO; 13] };
+    let mut frame = patchray_frame { numbers: [S::ZERO; 13], exponent: 0 };
     let mut grid = patchray_grid { numbers: [S::ZERO; 12], counts: [0; 5] };
     // SAFETY: both are laid out alike; a write of the kernel's struct leaves no field unset.
-    unsafe { (&raw mut frame).cast::<Frame<S>>().write(header.frame) };
+    unsafe { (&raw mut frame).cast::<Frame<S>>().write(*header.frame()) };
     // SAFETY: likewise.
-    unsafe { (&raw mut grid).cast::<GridSlot<S>>().write(header.grid) };
+    unsafe { (&raw mut grid).cast::<GridSlot<S>>().write(*header.grid()) };
     (frame, grid)
 }
 

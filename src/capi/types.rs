@@ -92,10 +92,10 @@ pub struct patchray_grid<S> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct patchray_frame<S> {
-    /// The power of two.
-    pub exponent: i32,
     /// The scale and its inverse, the origin, the largest coordinate, the box, its diagonal.
     pub numbers: [S; 13],
+    /// The power of two that the scale is.
+    pub exponent: i32,
 }
 
 /// A patch: a slot of its table.
@@ -423,5 +423,8 @@ pub(super) const fn checked_layouts<S: Scalar>() {
         assert!(alike::<patchray_remembered<S>, Remembered<S>>());
     }
 }
+
+// A macro in the header cannot name what it stands for.
+const _: () = assert!(PATCHRAY_LAYOUT == crate::LAYOUT);
 
 const _: () = (checked_layouts::<f32>(), checked_layouts::<f64>()).0;
