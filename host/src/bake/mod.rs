@@ -14,6 +14,7 @@ use crate::lower::{Lowered, Stages};
 use crate::memory::Kind;
 use crate::scene::trace::{Method, Precision};
 
+mod c;
 mod rust;
 
 /// What a slot of a table is.

@@ -17,8 +17,11 @@ pub struct BakeArgs {
     /// A file of surfaces (.bpt, or NURBS-Python's .json), or a scene file (.toml)
     pub file: PathBuf,
     /// Write the tables as a Rust module; `-` is standard output
-    #[arg(long, value_name = "FILE", required = true, help_heading = "Output")]
+    #[arg(long, value_name = "FILE", required_unless_present = "c", help_heading = "Output")]
     pub rust: Option<PathBuf>,
+    /// Write the tables as a header in C, whose names begin with the file's; `-` is standard output
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub c: Option<PathBuf>,
     /// The common flags.
     #[command(flatten)]
     pub flags: Flags,
@@ -29,20 +32,31 @@ pub struct BakeArgs {
 /// # Errors
 /// Flags that do not go together, bad input, too little memory, or an output that cannot be written.
 pub fn run(args: &BakeArgs) -> Result<(), Failure> {
-    let BakeArgs { file, rust, flags } = args;
+    let BakeArgs { file, rust, c, flags } = args;
     if flags.output.is_some() || flags.stats.is_some() || flags.json {
         return Err(Failure::Usage {
             message: "`bake` writes tables alone".to_owned(),
-            help: "name their file with --rust, and ask `info` for their bytes".to_owned(),
+            help: "name their file with --rust or --c, and ask `info` for their bytes".to_owned(),
         });
     }
-    super::check_outputs(rust.as_deref(), &[file], flags)?;
+    for output in [rust, c] {
+        super::check_outputs(output.as_deref(), &[file], flags)?;
+    }
+    if rust.is_some() && rust == c {
+        return Err(Failure::Usage {
+            message: "--rust and --c name one file".to_owned(),
+            help: "give each a file of its own".to_owned(),
+        });
+    }
     let Loaded { model, settings, .. } = load::scene_or_patches(file, flags)?;
     let prepared = Prepared::build(&model, Stages::of(settings.method), &settings)?;
     let baked = prepared.baked(settings.method);
     let name = name(file);
     if let Some(path) = rust {
         output::write(path, |out| baked.write_rust(&name, out))?;
+    }
+    if let Some(path) = c {
+        output::write(path, |out| baked.write_c(&name, &identifier(path), out))?;
     }
     if !flags.quiet {
         say(format_args!("{} bytes of tables for {}", baked.bytes(), settings.method.name()));
@@ -54,4 +68,11 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
 fn name(file: &Path) -> String {
     let name = file.file_name().map_or("standard input".into(), |name| name.to_string_lossy());
     name.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
+}
+
+/// What the names in a header begin with: the name of its file without folder and ending, as far as C has such names.
+fn identifier(path: &Path) -> String {
+    let stem = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy());
+    let name: String = stem.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if name.starts_with(|first: char| first.is_ascii_alphabetic()) { name } else { format!("scene_{name}") }
 }

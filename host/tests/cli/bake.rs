@@ -16,6 +16,9 @@ fn info_foretells_the_bytes_of_the_tables() {
             // The module itself holds that number against its tables; here they are counted by what they say they are.
             let counted: u64 = text.lines().filter_map(|line| table_bytes(line, precision)).sum();
             assert_eq!(bytes.as_u64(), Some(counted), "{method} {precision}");
+            folder.done(&format!("bake scene.toml --method {method} --precision {precision} --c in_c.h"));
+            // A compiler holds that number against the sizes of the tables; tests/capi/run has one.
+            assert!(folder.text("in_c.h").contains(&format!("#define in_c_BYTES {bytes}\n")), "{method} {precision}");
             let has = |name: &str| text.contains(&format!("pub fn {name}()"));
             let [patches, tree, grids] = [has("patches"), has("tree"), has("grids")];
             let predicted = method.ends_with("predicted");
@@ -52,5 +55,7 @@ fn bake_writes_tables_alone() {
     folder.fails("bake scene.toml", 2, &["--rust"]);
     folder.fails("bake scene.toml --rust a.rs -o b.rs", 2, &["--rust"]);
     folder.fails("bake scene.toml --rust scene.toml", 2, &["replace an input"]);
+    folder.fails("bake scene.toml --rust a.h --c a.h", 2, &["--rust", "--c"]);
+    folder.fails("bake scene.toml --c scene.toml", 2, &["replace an input"]);
     folder.fails("bake scene.toml --rust a.rs --limit arena-bytes=10", 4, &["10"]);
 }
