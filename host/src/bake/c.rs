@@ -23,13 +23,22 @@ impl Baked {
     pub fn write_c(&self, of: &str, name: &str, out: &mut impl Write) -> io::Result<()> {
         let guard = format!("{}_H", name.to_uppercase());
         let suffix = self.suffix();
-        writeln!(out, "// What `{}` borrows of {of}, in {suffix}: {} bytes of tables.", self.method.name(), self.bytes())?;
+        writeln!(
+            out,
+            "// What `{}` borrows of {of}, in {suffix}: {} bytes of tables.",
+            self.method.name(),
+            self.bytes()
+        )?;
         writeln!(out, "// Written by `patchray bake` {}. Not to be edited: bake again.", env!("CARGO_PKG_VERSION"))?;
         writeln!(out, "// To be included by one source file: it would have the tables once for each.")?;
         writeln!(out, "\n#ifndef {guard}\n#define {guard}\n\n#include \"patchray.h\"\n#include <math.h>")?;
         writeln!(out, "\n#if PATCHRAY_LAYOUT != {}", patchray::LAYOUT)?;
         writeln!(out, "#error \"these tables were baked for another version of patchray: bake them again\"\n#endif")?;
-        writeln!(out, "\n// The number of surfaces: slots of coherence memory.\n#define {name}_SURFACES {}", self.surfaces)?;
+        writeln!(
+            out,
+            "\n// The number of surfaces: slots of coherence memory.\n#define {name}_SURFACES {}",
+            self.surfaces
+        )?;
         writeln!(out, "\n// The bytes of all tables, as `patchray info` says.\n#define {name}_BYTES {}", self.bytes())?;
         for table in &self.tables {
             self.write_c_table(table, name, out)?;
@@ -59,7 +68,11 @@ impl Baked {
         writeln!(out, "\n// {}: {bytes}.", kind.name())?;
         writeln!(out, "#define {name}_{field}_LEN {count}\nstatic const {of} {name}_{field}[{}] = {{", count.max(1))?;
         if empty {
-            writeln!(out, "    {},", if matches!(slot, Slot::Plain | Slot::Weighted | Slot::Word) { "0" } else { "{{0}}" })?;
+            writeln!(
+                out,
+                "    {},",
+                if matches!(slot, Slot::Plain | Slot::Weighted | Slot::Word) { "0" } else { "{{0}}" }
+            )?;
         }
         let per_line = if *slot == Slot::Word { PER_LINE } else { 1 };
         for line in rows.chunks(per_line) {
@@ -134,10 +147,12 @@ impl Baked {
         }
     }
 
-    /// The frame as an initialiser.
+    /// The frame as an initialiser. In memory the largest coordinate stands between origin and box.
     fn c_frame(&self) -> String {
         let exponent: String = self.frame.words.iter().map(|bits| bits.cast_signed().to_string()).collect();
-        format!("{{{{{}}}, {exponent}}}", self.c_reals(&self.frame.reals))
+        let order = [0, 1, 2, 3, 4, 11, 5, 6, 7, 8, 9, 10, 12];
+        let reals: Vec<_> = order.into_iter().filter_map(|k| self.frame.reals.get(k).copied()).collect();
+        format!("{{{{{}}}, {exponent}}}", self.c_reals(&reals))
     }
 
     fn c_reals(&self, reals: &[f64]) -> String {
