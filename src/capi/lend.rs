@@ -184,7 +184,7 @@ impl<T> Room<T> {
 
 /// How many of `A` make a slot; that a slot is made of them is checked when compiling.
 const fn per_slot<A, T>() -> usize {
-    const { assert!(size_of::<T>() % size_of::<A>() == 0 && align_of::<A>() == align_of::<T>()) }
+    const { assert!(size_of::<T>().is_multiple_of(size_of::<A>()) && align_of::<A>() == align_of::<T>()) }
     size_of::<T>() / size_of::<A>()
 }
 

@@ -137,6 +137,8 @@ impl<P: Point> Asked<'_, P> {
 }
 
 type Found<S> = Result<Option<Hit<S>>, GaveUp<S>>;
+type WithTree<S> = (*const patchray_scene<S>, *const patchray_patches<S>, *const patchray_tree<S>);
+type WithGrids<S> = (*const patchray_scene<S>, *const patchray_patches<S>, *const patchray_grids<S>);
 type Out<S> = (*mut patchray_hit<S>, *mut patchray_work);
 
 /// A call with the scratch of the clipping methods: makes sure of all memory, that of `tables` last, before any is written.
@@ -290,11 +292,7 @@ pub(super) unsafe fn clipping_all<P: Point>(
 /// As for [`clipping_closest`].
 #[inline(always)]
 pub(super) unsafe fn clipping_coherent_closest<P: Point>(
-    (scene, patches, grids): (
-        *const patchray_scene<P::Scalar>,
-        *const patchray_patches<P::Scalar>,
-        *const patchray_grids<P::Scalar>,
-    ),
+    (scene, patches, grids): WithGrids<P::Scalar>,
     (memory, memory_len, scan_line): (*mut patchray_remembered<P::Scalar>, usize, u32),
     ray: *const patchray_ray<P::Scalar>,
     limits: *const patchray_limits<P::Scalar>,
@@ -320,11 +318,7 @@ pub(super) unsafe fn clipping_coherent_closest<P: Point>(
 /// As for [`clipping_closest`].
 #[inline(always)]
 pub(super) unsafe fn newton_closest<P: Point>(
-    (scene, patches, tree): (
-        *const patchray_scene<P::Scalar>,
-        *const patchray_patches<P::Scalar>,
-        *const patchray_tree<P::Scalar>,
-    ),
+    (scene, patches, tree): WithTree<P::Scalar>,
     ray: *const patchray_ray<P::Scalar>,
     limits: *const patchray_limits<P::Scalar>,
     scratch: (*mut u64, usize),
@@ -348,11 +342,7 @@ pub(super) unsafe fn newton_closest<P: Point>(
 /// As for [`clipping_closest`].
 #[inline(always)]
 pub(super) unsafe fn newton_any<P: Point>(
-    (scene, patches, tree): (
-        *const patchray_scene<P::Scalar>,
-        *const patchray_patches<P::Scalar>,
-        *const patchray_tree<P::Scalar>,
-    ),
+    (scene, patches, tree): WithTree<P::Scalar>,
     ray: *const patchray_ray<P::Scalar>,
     limits: *const patchray_limits<P::Scalar>,
     scratch: (*mut u64, usize),
@@ -376,11 +366,7 @@ pub(super) unsafe fn newton_any<P: Point>(
 /// As for [`clipping_closest`].
 #[inline(always)]
 pub(super) unsafe fn newton_coherent_closest<P: Point>(
-    (scene, patches, grids): (
-        *const patchray_scene<P::Scalar>,
-        *const patchray_patches<P::Scalar>,
-        *const patchray_grids<P::Scalar>,
-    ),
+    (scene, patches, grids): WithGrids<P::Scalar>,
     (memory, memory_len, scan_line): (*mut patchray_remembered<P::Scalar>, usize, u32),
     ray: *const patchray_ray<P::Scalar>,
     limits: *const patchray_limits<P::Scalar>,
