@@ -2,7 +2,7 @@
 //!
 //! `patchray.h` beside this file is made of it by cbindgen, and is what a C programmer reads. As everywhere in the kernel the
 //! caller lends all memory; here it comes as addresses and counts, so that every call first makes sure of them
-//! ([`lend`]): nothing is read or written through a null or misaligned address, past the end of the address space, or
+//! (`lend.rs`): nothing is read or written through a null or misaligned address, past the end of the address space, or
 //! through two ways at once where one of them writes. What it cannot see is whether memory of the size stated is there.
 //!
 //! A function for each method, kind of control points and precision, in a section of its own, so that a program that is
