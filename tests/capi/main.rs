@@ -3,6 +3,7 @@
 //! Its programs in C are built and run by `tests/capi/run`.
 #![allow(unsafe_code)] // What is tested takes addresses.
 #![allow(unreachable_pub)] // A program of its own.
+#![allow(clippy::type_complexity)] // Signatures stand as they do in C.
 
 #[path = "../common/mod.rs"]
 mod common;
