@@ -402,7 +402,12 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     #[cold]
     #[inline(never)]
     fn is_seen(&mut self, place: &Place<P::Scalar>, work: &mut Work) -> Result<bool, Limit> {
-        Ok(!place.local.may_be_singular() || self.local(place.at, work)?.distance() <= self.limits.tolerance + noise())
+        if !place.local.may_be_singular() {
+            return Ok(true);
+        }
+        // At a pole the residual ended the iteration, and was seen there.
+        let local = if place.local.at == place.at { place.local } else { self.local(place.at, work)? };
+        Ok(local.distance() <= self.limits.tolerance + noise())
     }
 
     /// The surface at (u, v) to first order.
