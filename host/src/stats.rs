@@ -29,6 +29,15 @@ pub enum Asked {
     Any,
 }
 
+/// The rays of a picture, by what they are for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RaysByKind {
+    /// The camera's, to which all other counters of a run belong.
+    pub camera: u64,
+    /// Those that mirrors sent on.
+    pub mirrored: u64,
+}
+
 /// What a run did. Counters are sums over all rays and do not depend on the number of threads.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stats {
@@ -47,6 +56,13 @@ pub struct Stats {
     /// The samples of a pixel, for a picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub samples: Option<Sampling>,
+    /// Rays by what they are for, for a picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rays_by_kind: Option<RaysByKind>,
+    /// In how many parts light was counted, for a picture: 3 (red, green and blue), or 9 samples of its spectrum where
+    /// something is of metal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light_samples: Option<u32>,
     /// The method.
     pub method: Method,
     /// The precision.
@@ -130,6 +146,8 @@ impl Stats {
             ray_file: None,
             size: None,
             samples: None,
+            rays_by_kind: None,
+            light_samples: None,
             method: settings.method,
             precision: settings.precision,
             asked: Asked::Closest,

@@ -10,7 +10,7 @@ use super::load::{self, Loaded};
 use super::{Failure, StatsOutputs, check_outputs, pool, progress, say, say_gave_up, summary};
 use crate::batch::Lanes;
 use crate::output::Output;
-use crate::picture::{GAVE_UP, Picture, Rgb, encode};
+use crate::picture::{self, GAVE_UP, Picture, encode};
 use crate::scanline::{Outcome, Tally, Tracer, rays_of};
 
 pub use crate::scanline::row;
@@ -19,7 +19,8 @@ use crate::scene::camera::View;
 use crate::scene::sampling::Sampling;
 use crate::settings::{Flags, SizeFlag};
 use crate::shade::painter::{Colour, Painter};
-use crate::stats::Stats;
+use crate::shade::spectrum::{Basis, Rgb, Sampled};
+use crate::stats::{RaysByKind, Stats};
 use crate::viewed::{Viewed, Wishes};
 
 /// The command line of `render`.
@@ -71,6 +72,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut stats = Stats::new(scene.display().to_string(), settings, used, &drawn.tally);
     stats.size = Some(size);
     stats.samples = Some(view.sampling);
+    stats.rays_by_kind = Some(drawn.rays);
+    stats.light_samples = Some(drawn.light_samples);
     drawn.picture.write_png(&mut png).map_err(|reason| png.failed(reason))?;
     png.finish()?;
     stats_outputs.finish(&stats)?;
@@ -88,46 +91,75 @@ pub struct Drawn {
     pub picture: Picture,
     /// What became of each sample's ray, scan line by scan line from the top.
     pub outcomes: Vec<Outcome>,
-    /// The sums.
+    /// The sums over the camera's rays.
     pub tally: Tally,
+    /// All rays, by what they are for.
+    pub rays: RaysByKind,
+    /// In how many parts light was counted.
+    pub light_samples: u32,
 }
 
-/// Draws a view, a row of pixels a job, on rayon's current threads. The result does not depend on their number.
+/// Draws a view, a row of pixels a job, on rayon's current threads. The result does not depend on their number. Light is
+/// counted as red, green and blue, or as nine samples of its spectrum where something is of metal.
 pub fn draw(tracer: &dyn Tracer, view: &View, appearance: &Appearance, bar: &ProgressBar) -> Drawn {
-    let painter = Painter::new(view.eye, appearance);
+    if appearance.has_metal() {
+        draw_in(Sampled::new(), tracer, view, appearance, bar)
+    } else {
+        draw_in(Rgb, tracer, view, appearance, bar)
+    }
+}
+
+fn draw_in<const N: usize>(
+    basis: impl Basis<N>,
+    tracer: &dyn Tracer,
+    view: &View,
+    appearance: &Appearance,
+    bar: &ProgressBar,
+) -> Drawn {
+    let painter = Painter::new(basis, view.eye, appearance);
     let lanes = Lanes::new(tracer);
     let side = view.sampling.side();
-    let rows: Vec<(Vec<Rgb>, Vec<Outcome>, Tally)> = (0..view.size[1])
+    let rows: Vec<(Vec<picture::Rgb>, Vec<Outcome>, Tally, u64)> = (0..view.size[1])
         .into_par_iter()
         .map(|py| {
             let (mut all, mut tally) = (Vec::new(), Tally::default());
-            let mut lines = Vec::new();
+            let (mut lines, mut mirrored) = (Vec::new(), 0);
             lanes.with(|lane| {
                 for line in side * py..side * (py + 1) {
                     let samples = view.scan_line(line);
                     let rays = rays_of(view, line, &samples);
                     let mut outcomes = Vec::with_capacity(rays.len());
                     lane.trace_line(&samples, &rays, &mut outcomes, &mut tally);
-                    lines.push(painter.paint(lane, &rays, &outcomes));
+                    let painted = painter.paint(lane, &rays, &outcomes);
+                    lines.push(painted.colours);
+                    mirrored += painted.mirrored;
                     all.extend(outcomes);
                 }
             });
             bar.inc(1);
-            (pixels(&lines), all, tally)
+            (pixels(&lines), all, tally, mirrored)
         })
         .collect();
-    let mut drawn = Drawn { picture: Picture::new(view.size), outcomes: Vec::new(), tally: Tally::default() };
-    for (pixels, outcomes, tally) in rows {
+    let mut drawn = Drawn {
+        picture: Picture::new(view.size),
+        outcomes: Vec::new(),
+        tally: Tally::default(),
+        rays: RaysByKind::default(),
+        light_samples: N as u32,
+    };
+    for (pixels, outcomes, tally, mirrored) in rows {
         drawn.picture.push_row(&pixels);
         drawn.outcomes.extend(outcomes);
         drawn.tally.add(&tally);
+        drawn.rays.mirrored += mirrored;
     }
+    drawn.rays.camera = drawn.tally.rays;
     drawn
 }
 
 /// The pixels of a row, from the colours of its samples in one or two scan lines: their mean, in linear colour. A pixel with
 /// a ray that was given up shows that.
-fn pixels(lines: &[Vec<Colour>]) -> Vec<Rgb> {
+fn pixels(lines: &[Vec<Colour>]) -> Vec<picture::Rgb> {
     let side = lines.len();
     let samples = (side * side) as f64;
     let width = lines.first().map_or(0, Vec::len) / side.max(1);

@@ -40,6 +40,25 @@ impl Default for Light {
     }
 }
 
+/// A metal, whose measured optical constants say how it mirrors light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Metal {
+    /// Aluminium.
+    Aluminium,
+    /// Copper.
+    Copper,
+    /// Gold.
+    Gold,
+    /// Silver.
+    Silver,
+}
+
+impl Metal {
+    /// All metals, by name.
+    pub const ALL: [Metal; 4] = [Metal::Aluminium, Metal::Copper, Metal::Gold, Metal::Silver];
+}
+
 /// The table `[material]`, or one of `[materials]`: how surfaces and polygons return the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -53,13 +72,25 @@ pub struct Material {
     pub highlight: f64,
     /// The exponent of the highlight, above 0: the larger, the smaller the spot. By default 40.
     pub shininess: f64,
-    /// The share of what is seen that is a mirror's picture, 0 to 1; the rest is the other fields'. By default 0.
+    /// The share of what is seen that is a mirror's picture, 0 to 1; the rest is the other fields'. By default 0. Of a
+    /// metal, what remains of the light that Fresnel's equations let it mirror; the rest is lost. By default 1.
     pub reflect: f64,
+    /// The metal that it is, if any: it mirrors by its optical constants, also its highlight, and scatters no light, so that
+    /// `colour`, `ambient` and `diffuse` mean nothing.
+    pub metal: Option<Metal>,
 }
 
 impl Default for Material {
     fn default() -> Self {
-        Self { colour: [0.8; 3], ambient: 0.15, diffuse: 0.7, highlight: 0.3, shininess: 40.0, reflect: 0.0 }
+        Self {
+            colour: [0.8; 3],
+            ambient: 0.15,
+            diffuse: 0.7,
+            highlight: 0.3,
+            shininess: 40.0,
+            reflect: 0.0,
+            metal: None,
+        }
     }
 }
 
@@ -76,6 +107,13 @@ pub struct Appearance {
     pub polygons: Vec<(Polygon, usize)>,
     /// The colour where there is nothing: red, green and blue, linear, 0 to 1.
     pub background: [f64; 3],
+}
+
+impl Appearance {
+    /// Whether something may be of metal, for which red, green and blue do not do.
+    pub fn has_metal(&self) -> bool {
+        self.materials.iter().any(|material| material.metal.is_some())
+    }
 }
 
 /// The background where a scene file gives none: white.
@@ -137,11 +175,16 @@ pub(super) struct MaterialTable {
     highlight: Option<Spanned<f64>>,
     shininess: Option<Spanned<f64>>,
     reflect: Option<Spanned<f64>>,
+    metal: Option<Metal>,
 }
 
 impl MaterialTable {
     pub(super) fn check(&self, check: &Check) -> Result<Material, InputError> {
         let mut material = Material::default();
+        if let Some(metal) = self.metal {
+            self.scatters_nothing(check)?;
+            material = Material { metal: Some(metal), reflect: 1.0, ..material };
+        }
         if let Some(colour) = &self.colour {
             material.colour = check.colour("`colour` of the material", colour)?;
         }
@@ -161,5 +204,21 @@ impl MaterialTable {
             material.reflect = check.part("`reflect`", reflect)?;
         }
         Ok(material)
+    }
+
+    /// Refuses what a metal does not have.
+    fn scatters_nothing(&self, check: &Check) -> Result<(), InputError> {
+        let colour = self.colour.as_ref().map(|colour| ("colour", colour.span()));
+        let ambient = self.ambient.as_ref().map(|ambient| ("ambient", ambient.span()));
+        let diffuse = self.diffuse.as_ref().map(|diffuse| ("diffuse", diffuse.span()));
+        let Some((name, span)) = colour.or(ambient).or(diffuse) else {
+            return Ok(());
+        };
+        Err(check.source.refuse(
+            span,
+            format!("`{name}` means nothing for a metal"),
+            "beside `metal`",
+            format!("leave `{name}` out: a metal scatters no light, and its colour is that of its optical constants"),
+        ))
     }
 }

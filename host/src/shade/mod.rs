@@ -1,29 +1,43 @@
 //! Light on surfaces: point lights, evenly scattered and as a highlight; surfaces have two sides.
 //!
 //! Source: J. F. Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977 (the highlight by the
-//! half-way vector).
+//! half-way vector). The highlight of a metal is what it mirrors of the light at the angle to the half-way vector, as in R. L.
+//! Cook and K. E. Torrance, "A reflectance model for computer graphics", ACM Transactions on Graphics 1 (1982), 7-24.
+//!
+//! Light has N parts: red, green and blue, or nine samples of its spectrum in a scene with a metal (see [`spectrum`]).
 
-use crate::scene::appearance::{Light, Material};
+use std::array;
 
+use crate::scene::appearance::Light;
+use finish::Finish;
+use spectrum::Basis;
+
+pub mod display;
+pub mod finish;
+pub mod fresnel;
+pub mod metal;
+pub mod observer;
 pub mod painter;
+pub mod spectrum;
 
 /// The lights of a scene, ready to shade points.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shader {
+pub struct Shader<const N: usize> {
     /// Each light's place and colour.
-    lights: Vec<([f64; 3], [f64; 3])>,
+    lights: Vec<([f64; 3], [f64; N])>,
 }
 
-impl Shader {
+impl<const N: usize> Shader<N> {
     /// The shader of a scene's lights; a light without a place is at the eye.
-    pub fn new(eye: [f64; 3], lights: &[Light]) -> Self {
-        Shader { lights: lights.iter().map(|light| (light.position.unwrap_or(eye), light.colour)).collect() }
+    pub fn new(eye: [f64; 3], lights: &[Light], basis: &impl Basis<N>) -> Self {
+        let placed = |light: &Light| (light.position.unwrap_or(eye), basis.parts(light.colour));
+        Shader { lights: lights.iter().map(placed).collect() }
     }
 
-    /// The linear colour of a point with the unit normal `normal`, either side of it, as seen from `eye`; parts may exceed 1.
-    /// A point without a normal is taken to face the eye.
-    pub fn colour(&self, eye: [f64; 3], point: [f64; 3], normal: Option<[f64; 3]>, material: &Material) -> [f64; 3] {
-        let Material { colour, ambient, diffuse, highlight, shininess, .. } = *material;
+    /// The light of a point with the unit normal `normal`, either side of it, as seen from `eye`; parts may exceed 1. A point
+    /// without a normal is taken to face the eye.
+    pub fn colour(&self, eye: [f64; 3], point: [f64; 3], normal: Option<[f64; 3]>, finish: &Finish<N>) -> [f64; N] {
+        let Finish { colour, ambient, diffuse, highlight, shininess, metal, .. } = *finish;
         let to_eye = unit(subtract(eye, point));
         let mut normal = normal.unwrap_or(to_eye);
         if dot(normal, to_eye) < 0.0 {
@@ -36,7 +50,14 @@ impl Shader {
             let facing = dot(normal, to_light).max(0.0);
             let half_way = unit([0, 1, 2].map(|k| to_eye[k] + to_light[k]));
             let spot = if facing > 0.0 { highlight * dot(normal, half_way).max(0.0).powf(shininess) } else { 0.0 };
-            sum = [0, 1, 2].map(|k| sum[k] + light_colour[k] * (colour[k] * diffuse * facing + spot));
+            sum = match metal {
+                None => array::from_fn(|k| sum[k] + light_colour[k] * (colour[k] * diffuse * facing + spot)),
+                Some(metal) if spot > 0.0 => {
+                    let cosine = dot(half_way, to_light);
+                    array::from_fn(|k| sum[k] + light_colour[k] * spot * metal[k].reflectance(cosine))
+                }
+                Some(_) => sum,
+            };
         }
         sum
     }
@@ -58,7 +79,9 @@ fn unit(vector: [f64; 3]) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::spectrum::{Rgb, Sampled};
     use super::*;
+    use crate::scene::appearance::{Material, Metal};
 
     const EYE: [f64; 3] = [0.0, 0.0, 5.0];
 
@@ -67,7 +90,7 @@ mod tests {
         let base = Material { colour: [1.0, 0.5, 0.0], ambient: 0.1, diffuse: 0.6, ..Material::default() };
         let material = Material { highlight: 0.2, shininess: 8.0, ..base };
         let lights: Vec<_> = lights.iter().map(|&at| Light { position: Some(at), colour: [1.0; 3] }).collect();
-        Shader::new(EYE, &lights).colour(EYE, [0.0; 3], normal, &material)
+        Shader::new(EYE, &lights, &Rgb).colour(EYE, [0.0; 3], normal, &Finish::new(&material, &Rgb))
     }
 
     fn assert_near(found: [f64; 3], expected: [f64; 3]) {
@@ -93,6 +116,36 @@ mod tests {
         let up = Some([0.0, 0.0, 1.0]);
         assert_near(colour(&[EYE, EYE], up), [1.7, 1.05, 0.4]);
         assert_near(colour(&[], up), [0.1, 0.05, 0.0]);
+    }
+
+    /// White evenly scattered, under a white light: in nine samples the grey that it is in red, green and blue.
+    #[test]
+    fn white_under_white_light_stays_neutral() {
+        let material = Material { colour: [1.0; 3], ambient: 0.1, diffuse: 0.6, highlight: 0.0, ..Material::default() };
+        let light = Light { position: Some([3.0, 0.0, 4.0]), colour: [1.0; 3] };
+        let basis = Sampled::new();
+        let shader = Shader::new(EYE, &[light], &basis);
+        let found = shader.colour(EYE, [0.0; 3], Some([0.0, 0.0, 1.0]), &Finish::new(&material, &basis));
+        let shown = basis.display(found);
+        assert!(shown.iter().all(|part| (part - (0.1 + 0.6 * 0.8)).abs() < 1e-8), "{shown:?}");
+    }
+
+    /// Of a metal only the highlight is seen, as strong as what the metal mirrors at the half of the angle.
+    #[test]
+    fn the_highlight_of_a_metal_is_what_it_mirrors() {
+        let material = Material { metal: Some(Metal::Gold), highlight: 0.5, shininess: 1.0, ..Material::default() };
+        let basis = Sampled::new();
+        let finish = Finish::new(&material, &basis);
+        // Toward the eye and toward the light it is 53.13 degrees, of which the half has the cosine √0.8.
+        let light = Light { position: Some([4.0, 0.0, 3.0]), colour: [1.0; 3] };
+        let found = Shader::new(EYE, &[light], &basis).colour(EYE, [0.0; 3], Some([0.0, 0.0, 1.0]), &finish);
+        let gold = finish.metal.expect("gold is a metal");
+        for (found, index) in found.into_iter().zip(gold) {
+            let cosine = 0.8f64.sqrt();
+            assert!((found - 0.5 * cosine * index.reflectance(cosine)).abs() < 1e-12);
+        }
+        let dark = Shader::new(EYE, &[], &basis).colour(EYE, [0.0; 3], None, &finish);
+        assert_eq!(dark, [0.0; 9]);
     }
 
     #[test]
