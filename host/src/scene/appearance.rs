@@ -110,9 +110,11 @@ pub struct Appearance {
 }
 
 impl Appearance {
-    /// Whether something may be of metal, for which red, green and blue do not do.
+    /// Whether a surface or a polygon is of metal, for which red, green and blue do not do.
     pub fn has_metal(&self) -> bool {
-        self.materials.iter().any(|material| material.metal.is_some())
+        let polygons = self.polygons.iter().map(|(_, material)| material);
+        let mut used = self.surfaces.iter().chain(polygons).filter_map(|&index| self.materials.get(index));
+        used.any(|material| material.metal.is_some())
     }
 }
 

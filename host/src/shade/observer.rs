@@ -124,9 +124,9 @@ mod tests {
 
     #[test]
     fn entries_and_what_lies_between() {
-        assert_eq!(matching(555), [0.5121, 1.0, 0.00575]);
+        assert_eq!(matching(555), [0.51205, 1.0, 0.00575]);
         let between = matching(558);
-        let expected = [0.4 * 0.5121 + 0.6 * 0.5945, 0.4 + 0.6 * 0.995, 0.4 * 0.00575 + 0.6 * 0.0039];
+        let expected = [0.4 * 0.51205 + 0.6 * 0.5945, 0.4 + 0.6 * 0.995, 0.4 * 0.00575 + 0.6 * 0.0039];
         assert!((0..3).all(|k| (between[k] - expected[k]).abs() < 1e-12), "{between:?}");
         assert_eq!((matching(780), matching(379), matching(781)), ([0.000_042, 0.000_015, 0.0], [0.0; 3], [0.0; 3]));
     }

@@ -158,6 +158,8 @@ fn render_draws_and_counts() {
     assert_eq!((&stats["rays"], &stats["surfaces"], &stats["gave_up"]), (&3072.into(), &32.into(), &0.into()));
     assert!(stats["clip_steps"].as_u64() > stats["hit_rays"].as_u64());
     assert_eq!((&stats["patches"], &stats["asked"]), (&0.into(), &"closest".into()));
+    let kinds = &stats["rays_by_kind"];
+    assert_eq!((&kinds["camera"], &kinds["mirrored"], &stats["light_samples"]), (&3072.into(), &0.into(), &3.into()));
     // What the scene file and the flags say is what is in effect; the flags win.
     let settings = &stats["settings"];
     assert_eq!((&settings["flatness"], &settings["clip_threshold"]), (&0.002.into(), &0.2.into()));

@@ -1,4 +1,5 @@
 //! Entries of `surfaces`, groups, polygons, materials and lights.
+use super::super::super::appearance::Metal;
 use super::super::super::shapes;
 use super::super::super::transform::Transform;
 use super::*;
@@ -24,7 +25,7 @@ fn the_documentation_names_every_field_in_a_scene_that_is_one() {
     let documentation = include_str!("../../../../../fixtures/scenes/README.md");
     let example = documentation.split("```toml").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
     let description = parse("s.toml", example).expect("valid");
-    assert_eq!((description.materials.len(), description.groups.len(), description.lights.len()), (2, 1, 2));
+    assert_eq!((description.materials.len(), description.groups.len(), description.lights.len()), (3, 1, 2));
     for field in [
         "background",
         "surfaces",
@@ -73,6 +74,7 @@ fn the_documentation_names_every_field_in_a_scene_that_is_one() {
         "highlight",
         "shininess",
         "reflect",
+        "metal",
         "method",
         "precision",
         "acceptance",
@@ -235,4 +237,27 @@ fn lights_and_mirrors() {
     assert!(parse("s.toml", &format!("{both}{CAMERA}")).is_err_and(|e| e.to_string().contains("both `light`")));
     refused_after("[material]\nreflect = 1.5\n", "s.toml:6:11", "`reflect` is 1.5");
     refused_after("[image]\nsamples = \"jitered\"\n", "s.toml:6:11", "(did you mean `jittered`?)");
+}
+
+#[test]
+fn a_metal_is_named_and_scatters_no_light() {
+    let of = |table: &str| parse("s.toml", &format!("surfaces = [{{ {TORUS} }}]\n{CAMERA}\n[material]\n{table}\n"));
+    let gold = of("metal = \"gold\"\nhighlight = 0.6").expect("valid").material;
+    assert_eq!((gold.metal, gold.reflect, gold.highlight), (Some(Metal::Gold), 1.0, 0.6));
+    assert_eq!(of("metal = \"silver\"\nreflect = 0.5").expect("valid").material.reflect, 0.5);
+    for metal in Metal::ALL {
+        let name = format!("{metal:?}").to_lowercase();
+        assert_eq!(of(&format!("metal = \"{name}\"")).expect("valid").material.metal, Some(metal));
+    }
+    refused_after(
+        "[material]\nmetal = \"cooper\"\n",
+        "s.toml:6:9",
+        "there is no `cooper` here (did you mean `copper`?)",
+    );
+    for (field, place) in
+        [("colour = [1, 1, 1]", "s.toml:7:10"), ("ambient = 0.1", "s.toml:7:11"), ("diffuse = 0", "s.toml:7:11")]
+    {
+        let text = format!("[material]\nmetal = \"gold\"\n{field}\n");
+        refused_after(&text, place, "means nothing for a metal");
+    }
 }
