@@ -3,7 +3,7 @@
 //! Sources: P. B. Johnson and R. W. Christy, "Optical constants of the noble metals", Physical Review B 6 (1972), 4370-4379,
 //! table I, for gold, silver and copper, whose photon energies are given here as wavelengths; A. D. Rakić, "Algorithm for the
 //! determination of intrinsic optical constants of metal films: application to aluminum", Applied Optics 34 (1995),
-//! 4755-4767, table 2, for aluminium, as the model of Rakić, Djurišić, Elazar and Majewski, Applied Optics 37 (1998),
+//! 4755-4767, for aluminium, as the model of Rakić, Djurišić, Elazar and Majewski, Applied Optics 37 (1998),
 //! 5271-5283, was fitted to.
 
 use super::fresnel::Index;

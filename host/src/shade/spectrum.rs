@@ -1,7 +1,7 @@
 //! What light is counted in: red, green and blue, or nine samples over the visible range where a metal needs them.
 //!
-//! Spectral sampling after R. Hall, Illumination and Color in Computer Generated Imagery, Springer 1989, section 3.5.3: a
-//! sample stands for all wavelengths that are nearer to it than to any other, as if the spectrum were flat there, and so has a
+//! Spectral sampling after R. Hall, Illumination and Color in Computer Generated Imagery, Springer 1988: a sample
+//! stands for all wavelengths that are nearer to it than to any other, as if the spectrum were flat there, and so has a
 //! fixed part in X, Y and Z. The samples lie 30 nm apart, from 434 nm on. The first one's place decides how well steep
 //! spectra are met: from here the colours of the four metals, and of one mirrored in another, are within 0.8 % of those by
 //! steps of 1 nm; with samples at 400, 440, .. 720 nm 4 % would be reached.
