@@ -381,7 +381,8 @@ fn outcome<H: Hits<P::Scalar>, P: Point>(
     }
 }
 
-fn found<P: Point>(scene: &Scene<'_, P>, basis: &mut Basis<P::Scalar, ORDER>, hit: &Hit<P::Scalar>) -> Found {
+/// A hit of a scene in `f64`, with its normal.
+pub fn found<P: Point>(scene: &Scene<'_, P>, basis: &mut Basis<P::Scalar, ORDER>, hit: &Hit<P::Scalar>) -> Found {
     let normal = scene.normal(hit, &mut basis.view());
     // A surface without a normal there has the zero vector. The basis is large enough for every degree.
     let normal = normal.ok().map(|normal| normal.map(|c| c.to_f64())).filter(|normal| *normal != [0.0; 3]);

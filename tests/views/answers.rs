@@ -14,7 +14,7 @@ use patchray::point::{Plain, Weighted};
 use patchray::scalar::Scalar;
 use patchray::subdivide::Subdivision;
 use patchray_host::judge::{Agreement, Allowance, Truth, allowance};
-use patchray_host::scanline::{Found, Outcome};
+use patchray_host::scanline::{Outcome, found};
 use patchray_host::scene::model::ModelSurface;
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::trace::Precision;
@@ -85,15 +85,7 @@ pub(crate) fn outcome<P: Kind>(prepared: &Prepared<P>, seen: &Seen<P::Scalar>) -
         Ok(Err(gave_up)) => return Outcome::GaveUp { limit: gave_up.limit.name(), best: None },
         Err(error) => return Outcome::Refused(*error),
     };
-    let normal = prepared.scene().normal(hit, &mut Basis::<P::Scalar, 16>::new().view()).ok();
-    Outcome::Hit(Found {
-        t: hit.t.to_f64(),
-        u: hit.u.to_f64(),
-        v: hit.v.to_f64(),
-        surface: hit.surface as usize,
-        normal: normal.map(|normal| normal.map(Scalar::to_f64)),
-        grazing: hit.grazing,
-    })
+    Outcome::Hit(found(&prepared.scene(), &mut Basis::new(), hit))
 }
 
 /// The answers of a method to all images; `scale` is that of model and camera, which t does not feel.

@@ -7,10 +7,9 @@ use crate::common::{Kind, Prepared};
 use crate::input::Case;
 use crate::lane::Answer;
 use patchray::bernstein::Basis;
-use patchray::scalar::Scalar;
 use patchray_host::judge::Truth;
 use patchray_host::oracle::Oracle;
-use patchray_host::scanline::{Found, Outcome};
+use patchray_host::scanline::{Outcome, found};
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::trace::Precision;
 use patchray_host::stress::case::Case as StressCase;
@@ -21,17 +20,7 @@ pub(crate) fn outcome<P: Kind>(prepared: &Prepared<P>, answer: &Answer<P::Scalar
     match answer {
         Ok(None) => Outcome::Miss,
         Err(gave_up) => Outcome::GaveUp { limit: gave_up.limit.name(), best: None },
-        Ok(Some(hit)) => {
-            let normal = prepared.scene().normal(hit, &mut Basis::<P::Scalar, 16>::new().view()).ok();
-            Outcome::Hit(Found {
-                t: hit.t.to_f64(),
-                u: hit.u.to_f64(),
-                v: hit.v.to_f64(),
-                surface: hit.surface as usize,
-                normal: normal.map(|normal| normal.map(Scalar::to_f64)),
-                grazing: hit.grazing,
-            })
-        }
+        Ok(Some(hit)) => Outcome::Hit(found(&prepared.scene(), &mut Basis::new(), hit)),
     }
 }
 
