@@ -53,7 +53,7 @@ pub struct Clipper<'a, 's, 'm, P: Point> {
     pub room: &'a mut ClipRoom<'s, P>,
 }
 
-impl<P: Point> Clipper<'_, '_, '_, P> {
+impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
     /// Projects the net, for [`Clipper::single`] and [`Clipper::roots_within`].
     #[inline(always)]
     pub(crate) fn project(&mut self) -> Result<(), Limit> {
@@ -87,58 +87,112 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
         mut found: impl FnMut(Root<P::Scalar>, &mut Work),
     ) -> Result<(), Limit> {
         match self.single(region, work)? {
-            Single::Nothing => Ok(()),
-            Single::Root(root, _) => {
-                found(root, work);
-                Ok(())
+            Single::Nothing => {}
+            Single::Root(root, _) => found(root, work),
+            Single::Unproved => {
+                let mut roots = self.search(Order::Any, Some(region))?;
+                // Ends with the roots, whose search counts clips against a budget.
+                while let Some(root) = roots.next(work)? {
+                    found(root, work);
+                }
             }
-            Single::Unproved => self.clipped(Order::Any, Some(region), work, |root, _, work| {
-                found(root, work);
-                Ok(true)
-            }),
         }
+        Ok(())
     }
 
-    /// All points where the ray's line meets the surface, in `order`, to `found`; which also learns whether regions still
-    /// wait, and says whether to go on.
+    /// The search for all points where the ray's line meets the surface, in `order`.
     #[inline(always)]
-    pub fn roots(
-        &mut self,
-        order: Order<P::Scalar>,
-        work: &mut Work,
-        found: impl FnMut(Root<P::Scalar>, bool, &mut Work) -> Result<bool, Limit>,
-    ) -> Result<(), Limit> {
+    pub fn roots(&mut self, order: Order<P::Scalar>) -> Result<Roots<'_, 's, 'm, P>, Limit> {
         self.project()?;
-        self.clipped(order, None, work, found)
+        self.search(order, None)
     }
 
     /// [`Clipper::roots`] of a region of the surface, or all of it, from the projected net.
-    #[inline(always)]
-    pub(crate) fn clipped(
+    #[inline]
+    pub(crate) fn search(
         &mut self,
-        mut order: Order<P::Scalar>,
+        order: Order<P::Scalar>,
         region: Option<Region<P::Scalar>>,
-        work: &mut Work,
-        mut found: impl FnMut(Root<P::Scalar>, bool, &mut Work) -> Result<bool, Limit>,
-    ) -> Result<(), Limit> {
+    ) -> Result<Roots<'_, 's, 'm, P>, Limit> {
         let Clipper { surface, planes, limits, room } = self;
-        let ClipRoom { whole, part, pending, roots, basis } = &mut **room;
+        let ClipRoom { whole, part, pending, roots: found, basis } = &mut **room;
         let whole: &[P::Flat] = whole.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
         let part = Part::whole(surface.net.degrees(), whole, planes.projection_error(), part);
-        let Some(mut part) = part.map_err(|Full| Limit::Scratch)? else {
-            return Ok(());
-        };
-        if let Some(region) = region {
+        let mut part = part.map_err(|Full| Limit::Scratch)?;
+        if let (Some(part), Some(region)) = (&mut part, region) {
             part.become_region(whole, region);
         }
         pending.clear();
-        roots.clear();
+        found.clear();
+        let open = part.is_some();
+        Ok(Roots { surface, planes, limits, whole, part, open, bisected: false, order, pending, found, basis })
+    }
+}
+
+/// The search for all points where a ray's line meets a surface, or a region of it: they are asked for one by one.
+///
+/// A machine holds this code once, whatever becomes of the roots: it is most of what clipping takes.
+pub struct Roots<'a, 's, 'm, P: Point> {
+    surface: &'a Surface<'m, P>,
+    planes: &'a Planes<P::Scalar>,
+    limits: &'a Limits<P::Scalar>,
+    /// The surface's projected net.
+    whole: &'a [P::Flat],
+    /// The region at hand; none of a surface that is seen to pass the ray by.
+    part: Option<Part<'a, P::Flat>>,
+    /// Whether that is still to be clipped.
+    open: bool,
+    /// Whether any region was bisected.
+    bisected: bool,
+    order: Order<P::Scalar>,
+    pending: &'a mut VecView<Region<P::Scalar>>,
+    found: &'a mut VecView<Root<P::Scalar>>,
+    basis: &'a mut BasisView<'s, P::Scalar>,
+}
+
+impl<P: Point> Roots<'_, '_, '_, P> {
+    /// Whether regions wait that may hold more roots.
+    #[inline(always)]
+    pub fn regions_wait(&self) -> bool {
+        !self.pending.is_empty()
+    }
+
+    /// The next root; `None` if there are no more.
+    ///
+    /// # Errors
+    /// What ran out: then the search is at its end, too.
+    #[inline(always)]
+    pub fn next(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+        // Most surfaces have one root, after which no region waits.
+        if self.open || self.regions_wait() { self.clip_on(work) } else { Ok(None) }
+    }
+
+    #[inline(never)]
+    fn clip_on(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+        let Roots { surface, planes, limits, whole, part: Some(part), pending, found, basis, order, .. } = self else {
+            return Ok(None);
+        };
         let tolerance = limits.tolerance;
         // Whether the last clip, which was of the other parameter, found it settled.
         let mut settled = false;
-        let mut bisected = false;
         // Ends: each turn counts a clip against its budget.
         loop {
+            if !self.open {
+                // Ends: each turn takes one of the regions that wait.
+                loop {
+                    match order.pop(pending) {
+                        Some(region) => part.become_region(whole, region),
+                        None => return Ok(None),
+                    }
+                    // Most halves of a small region, which only a fold keeps from being proved, lie apart from the ray across
+                    // it; of larger ones a clip is the better question.
+                    let folded = is_provable(surface, part.region.widths());
+                    if !folded || !matches!(across(part.degrees, part.net, &part.noise(tolerance)), Across::Apart) {
+                        break;
+                    }
+                }
+                (self.open, settled) = (true, false);
+            }
             spend(&mut work.clip_steps, limits.clip_steps, Limit::ClipSteps)?;
             let direction = part.region.next;
             part.region.next = direction.other();
@@ -148,7 +202,7 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                 Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
                     part.narrow(direction, [from, to]);
                     settled = false;
-                    if !bisected || may_be_single(surface, &part) {
+                    if !self.bisected || may_be_single(surface, part) {
                         match contract(surface, whole, part.region, limits, basis, work)? {
                             Contraction::Open => Step::On,
                             Contraction::Done(place) => Step::Done(place),
@@ -180,50 +234,34 @@ impl<P: Point> Clipper<'_, '_, '_, P> {
                 Clip::Settled => Step::Settled,
             };
             if let (Step::Settled, true) = (&step, settled) {
-                step = match nearest(surface, planes, whole, &part, tolerance, basis)? {
+                step = match nearest(surface, planes, whole, part, tolerance, basis)? {
                     // Between lines that are near parallel both clips may settle too soon.
                     None => part.region.halves(part.longer()).map_or(Step::Done(None), Step::Bisect),
                     place => Step::Done(place),
                 };
             }
-            let done = match step {
-                Step::On => continue,
-                Step::Settled => {
-                    settled = true;
-                    continue;
-                }
-                Step::Done(place) => place,
+            match step {
+                Step::On => {}
+                Step::Settled => settled = true,
                 Step::Bisect([first, second]) => {
                     spend(&mut work.bisections, limits.bisections, Limit::Bisections)?;
-                    work.bisection_cases += u32::from(!bisected);
-                    bisected = true;
+                    work.bisection_cases += u32::from(!self.bisected);
+                    self.bisected = true;
                     order.push(second, pending, limits.pending_domains)?;
                     order.push(first, pending, limits.pending_domains)?;
-                    None
+                    self.open = false;
                 }
-            };
-            if let Some(place) = done {
-                let root = place.root(&surface.net, whole, planes, limits, basis)?;
-                let seen = Seen { surface, planes, whole, roots, allowed: allowed(tolerance, part.error) };
-                if !seen.holds(&root, limits, basis)? {
-                    if !found(root, !pending.is_empty(), work)? {
-                        return Ok(());
+                Step::Done(place) => {
+                    self.open = false;
+                    if let Some(place) = place {
+                        let root = place.root(&surface.net, whole, planes, limits, basis)?;
+                        let seen =
+                            Seen { surface, planes, whole, roots: found, allowed: allowed(tolerance, part.error) };
+                        if !seen.holds(&root, limits, basis)? {
+                            let _ = found.push(root);
+                            return Ok(Some(root));
+                        }
                     }
-                    let _ = roots.push(root);
-                }
-            }
-            settled = false;
-            // Ends: each turn takes one of the regions that wait.
-            loop {
-                match order.pop(pending) {
-                    Some(region) => part.become_region(whole, region),
-                    None => return Ok(()),
-                }
-                // Most halves of a small region, which only a fold keeps from being proved, lie apart from the ray across it; of
-                // larger ones a clip is the better question.
-                let folded = is_provable(surface, part.region.widths());
-                if !folded || !matches!(across(part.degrees, part.net, &part.noise(tolerance)), Across::Apart) {
-                    break;
                 }
             }
         }

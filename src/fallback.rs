@@ -53,8 +53,6 @@ impl<P: Point> Fallback<P> for NoFallback {
 impl<P: Point> Fallback<P> for ClipRoom<'_, P> {
     const COMPLETE: bool = true;
 
-    // Seldom needed, and large.
-    #[inline(never)]
     fn roots(
         &mut self,
         surface: &Surface<'_, P>,
@@ -66,9 +64,11 @@ impl<P: Point> Fallback<P> for ClipRoom<'_, P> {
     ) -> Result<(), Limit> {
         let mut clipper = Clipper { surface, planes, limits, room: self };
         clipper.project()?;
-        clipper.clipped(Order::Any, Some(region), work, |root, _, work| {
+        let mut roots = clipper.search(Order::Any, Some(region))?;
+        // Ends with the roots, whose search counts clips against a budget.
+        while let Some(root) = roots.next(work)? {
             found(root, work);
-            Ok(true)
-        })
+        }
+        Ok(())
     }
 }

@@ -32,10 +32,11 @@ fn all<P: Point>(
     let mut room =
         ClipRoom { whole: &mut whole, part: &mut part, pending: &mut pending, roots: &mut seen, basis: basis.view() };
     let (mut work, mut roots) = (Work::default(), Vec::new());
-    Clipper { surface: &surface, planes: &planes, limits, room: &mut room }.roots(order, &mut work, |root, _, _| {
+    let mut clipper = Clipper { surface: &surface, planes: &planes, limits, room: &mut room };
+    let mut search = clipper.roots(order)?;
+    while let Some(root) = search.next(&mut work)? {
         roots.push(root);
-        Ok(true)
-    })?;
+    }
     Ok((roots, work))
 }
 

@@ -31,10 +31,12 @@ pub fn closest<P: Point>(
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     scene.closest(ray, interval, limits, work, |surface, planes, _, work| {
         let mut best = None;
-        Clipper { surface, planes, limits, room }.roots(Order::Any, work, |root, _, work| {
+        let mut clipper = Clipper { surface, planes, limits, room };
+        let mut roots = clipper.roots(Order::Any)?;
+        // Ends with the roots.
+        while let Some(root) = roots.next(work)? {
             keep_closest(&mut best, root, planes, &mut work.intersection_points);
-            Ok(true)
-        })?;
+        }
         Ok(best)
     })
 }
@@ -89,10 +91,13 @@ pub fn all_hits<P: Point>(
     work: &mut Work,
 ) -> Result<(), GaveUp<P::Scalar>> {
     collect::all_hits(scene, ray, interval, limits, hits, work, |surface, planes, _, all, work| {
-        Clipper { surface, planes, limits, room }.roots(Order::Any, work, |root, _, work| {
+        let mut clipper = Clipper { surface, planes, limits, room };
+        let mut roots = clipper.roots(Order::Any)?;
+        // Ends with the roots.
+        while let Some(root) = roots.next(work)? {
             all.add(root, surface, planes, limits.tolerance, &mut work.intersection_points);
-            Ok(true)
-        })
+        }
+        Ok(())
     })
 }
 
@@ -108,10 +113,15 @@ pub fn any_hit<P: Point>(
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     collect::any_hit(scene, ray, interval, limits, work, |surface, planes, _, work| {
         let mut any = None;
-        Clipper { surface, planes, limits, room }.roots(Order::Any, work, |root, _, work| {
+        let mut clipper = Clipper { surface, planes, limits, room };
+        let mut roots = clipper.roots(Order::Any)?;
+        // Ends with the roots.
+        while let Some(root) = roots.next(work)? {
             keep_closest(&mut any, root, planes, &mut work.intersection_points);
-            Ok(any.is_none())
-        })?;
+            if any.is_some() {
+                break;
+            }
+        }
         Ok(any)
     })
 }

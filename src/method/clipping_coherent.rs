@@ -94,22 +94,24 @@ fn search<P: Point>(
     // The closest root at all but those before the interval: what the next ray begins at.
     let mut closest: Option<Root<P::Scalar>> = None;
     let mut first = previous.is_some();
-    clipper.roots(Order::around(previous), work, |root, regions_wait, work| {
+    let mut roots = clipper.roots(Order::around(previous))?;
+    // Ends with the roots.
+    while let Some(root) = roots.next(work)? {
         if planes.is_before_interval(root.depth) {
-            return Ok(true);
+            continue;
         }
         keep_closest(&mut best, root, planes, &mut work.intersection_points);
         if closest.is_none_or(|old| root.depth < old.depth) {
             closest = Some(root);
         }
-        if !(first && regions_wait) {
-            return Ok(true);
+        if !(first && roots.regions_wait()) {
+            continue;
         }
         first = false;
         match verdict(along, planes, &root, nearest, limits, work)? {
             Verdict::Closest => {
                 work.verified += 1;
-                return Ok(false);
+                break;
             }
             Verdict::Critical => work.refused_as_critical += 1,
             Verdict::Hidden { by_neighbour } => {
@@ -117,8 +119,7 @@ fn search<P: Point>(
                 work.refused_by_neighbour += u32::from(by_neighbour);
             }
         }
-        Ok(true)
-    })?;
+    }
     *slot = Remembered::of(closest, stamp);
     // A root behind the closest hit so far, verified, proves a miss before it.
     Ok(best)

@@ -500,8 +500,15 @@ extern "C" fn clip_roots<P: Point>(
     out: &mut Result<(), Limit>,
 ) {
     let room = &mut scratch.view();
-    *out = Clipper { surface, planes, limits, room }
-        .roots(*order, work, |root, wait, _| Ok(roots.push(root).is_ok() && wait));
+    let mut clipper = Clipper { surface, planes, limits, room };
+    *out = clipper.roots(*order).and_then(|mut search| {
+        while let Some(root) = search.next(work)? {
+            if roots.push(root).is_err() || !search.regions_wait() {
+                break;
+            }
+        }
+        Ok(())
+    });
 }
 
 /// What is asked of one region, and of those that wait.
