@@ -15,6 +15,7 @@ use crate::scene::shapes::Random;
 use crate::scene::trace::Method;
 use crate::settings::Settings;
 use crate::viewed::{Viewed, Wishes};
+use std::ops::Range;
 
 /// A scene to measure methods on.
 pub struct Scene<'s> {
@@ -80,9 +81,20 @@ pub struct Primary {
 }
 
 /// Traces a whole picture with a lane; `each` is given the outcomes of each scan line.
-pub(crate) fn trace_picture(lane: &mut dyn Lane, picture: &View, tally: &mut Tally, mut each: impl FnMut(&[Outcome])) {
+pub(crate) fn trace_picture(lane: &mut dyn Lane, picture: &View, tally: &mut Tally, each: impl FnMut(&[Outcome])) {
+    trace_lines(lane, picture, 0..picture.scan_lines(), tally, each);
+}
+
+/// Traces some scan lines of a picture with a lane.
+fn trace_lines(
+    lane: &mut dyn Lane,
+    picture: &View,
+    lines: Range<u32>,
+    tally: &mut Tally,
+    mut each: impl FnMut(&[Outcome]),
+) {
     let mut outcomes = Vec::new();
-    for line in 0..picture.scan_lines() {
+    for line in lines {
         let samples = picture.scan_line(line);
         outcomes.clear();
         lane.trace_line(&samples, &rays_of(picture, line, &samples), &mut outcomes, tally);
@@ -90,12 +102,31 @@ pub(crate) fn trace_picture(lane: &mut dyn Lane, picture: &View, tally: &mut Tal
     }
 }
 
-/// The times of several things to do, which are done in turn: each says how many seconds it took.
-fn in_turn<T>(scene: &Scene, repetitions: u32, subjects: &mut [T], mut pass: impl FnMut(&mut T) -> f64) -> Vec<Times> {
+/// The parts of a pass that methods do in turn: so many that what else goes on in the machine meanwhile disturbs all methods
+/// alike, and so few that a part is some thousand rays, beside which filling the caches anew is nothing.
+const PARTS: u32 = 32;
+
+/// The times of several subjects that each have a number of lines to trace, a part of them in turn: `trace` says how many
+/// seconds its lines took, of the subject and how many there are of all.
+fn in_turn<T>(
+    scene: &Scene,
+    repetitions: u32,
+    subjects: &mut [T],
+    lines_of: impl Fn(&T) -> u32,
+    mut trace: impl FnMut(&mut T, Range<u32>) -> f64,
+) -> Vec<Times> {
     let mut seconds = vec![Vec::new(); subjects.len()];
     for _ in 0..repetitions {
-        for (subject, seconds) in subjects.iter_mut().zip(&mut seconds) {
-            seconds.push(pass(subject));
+        let mut pass = vec![0.0; subjects.len()];
+        for part in 0..PARTS {
+            for (subject, seconds) in subjects.iter_mut().zip(&mut pass) {
+                let lines = u64::from(lines_of(subject));
+                let edge = |part: u32| (lines * u64::from(part) / u64::from(PARTS)) as u32;
+                *seconds += trace(subject, edge(part)..edge(part + 1));
+            }
+        }
+        for (seconds, pass) in seconds.iter_mut().zip(pass) {
+            seconds.push(pass);
             (scene.step)();
         }
     }
@@ -146,11 +177,18 @@ impl Scene<'_> {
             }
             (self.step)();
         }
-        let times = in_turn(self, self.repetitions, &mut lanes, |lane| {
-            let mut tally = Tally::default();
-            trace_picture(lane.as_mut(), &self.picture, &mut tally, |_| {});
-            tally.seconds
-        });
+        let scan_lines = self.picture.scan_lines();
+        let times = in_turn(
+            self,
+            self.repetitions,
+            &mut lanes,
+            |_| scan_lines,
+            |lane, lines| {
+                let mut tally = Tally::default();
+                trace_lines(lane.as_mut(), &self.picture, lines, &mut tally, |_| {});
+                tally.seconds
+            },
+        );
         let mut runs = [Vec::new(), Vec::new()];
         let mut measured = subjects.iter().zip(&times).zip(judged).enumerate();
         for (table, runs) in runs.iter_mut().enumerate() {
@@ -184,9 +222,10 @@ impl Scene<'_> {
         let tracers = viewed.iter_mut().map(Viewed::tracer).collect::<Result<Vec<_>, _>>()?;
         let lanes = tracers.iter().map(|(tracer, _)| tracer.lane());
         let mut lanes: Vec<_> = lanes.zip(&subjects).map(|(lane, (_, picture))| (lane, picture)).collect();
-        let times = in_turn(self, fewer(self.repetitions), &mut lanes, |(lane, picture)| {
+        let scan_lines = |(_, picture): &(_, &View)| picture.scan_lines();
+        let times = in_turn(self, fewer(self.repetitions), &mut lanes, scan_lines, |(lane, picture), lines| {
             let mut tally = Tally::default();
-            trace_picture(lane.as_mut(), picture, &mut tally, |_| {});
+            trace_lines(lane.as_mut(), picture, lines, &mut tally, |_| {});
             tally.seconds
         });
         let run = |(&method, times): (&Method, &[Times])| {
@@ -227,15 +266,23 @@ impl Scene<'_> {
             tracers.extend(any);
         }
         let mut lanes: Vec<_> = tracers.iter().map(|tracer| (tracer.lane(), 0)).collect();
-        let times = in_turn(self, fewer(self.repetitions), &mut lanes, |(lane, points)| {
-            let (mut tally, mut outcomes) = (Tally::default(), Vec::new());
-            for line in lines {
-                outcomes.clear();
-                lane.trace(line, false, &mut outcomes, &mut tally);
-            }
-            *points = tally.count("intersection_points");
-            tally.seconds
-        });
+        let count = lines.len() as u32;
+        let times = in_turn(
+            self,
+            fewer(self.repetitions),
+            &mut lanes,
+            |_| count,
+            |(lane, points), part| {
+                let (mut tally, mut outcomes) = (Tally::default(), Vec::new());
+                let first = part.start == 0;
+                for line in lines.get(part.start as usize..part.end as usize).unwrap_or_default() {
+                    outcomes.clear();
+                    lane.trace(line, false, &mut outcomes, &mut tally);
+                }
+                *points = if first { 0 } else { *points } + tally.count("intersection_points");
+                tally.seconds
+            },
+        );
         let (pairs, any) = times.split_at(2 * PAIRS.len());
         let rays = lines.iter().map(|line| line.len() as u64).sum();
         let run = |(place, (&[method, _], times)): (usize, (&[Method; 2], &[Times]))| {
