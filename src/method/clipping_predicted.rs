@@ -17,7 +17,7 @@
 use super::follow::{Best, Followed, Following};
 use crate::clipper::{ClipRoom, Clipper};
 use crate::contract::Single;
-use crate::limits::{GaveUp, Limit, Limits, Work};
+use crate::limits::{Acceptance, GaveUp, Limit, Limits, Work};
 use crate::line::{InLine, Line};
 use crate::newton::Alone;
 use crate::patch::Patch;
@@ -99,7 +99,7 @@ fn closest_so_far<P: Point>(
     work: &mut Work,
 ) -> Result<(), Limit> {
     let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(ray.place, stamp));
-    let mut search = Search { view, ray, limits, nearby, room, projected: None };
+    let mut search = Search { view, ray, limits, nearby, room, projected: None, decided: None };
     let mut resumed = false;
     let start = start.filter(|_| search.nearby.holds_surface(last));
     if let (Some(start), Some(slot)) = (start, memory.slots.get_mut(last as usize)) {
@@ -132,6 +132,8 @@ struct Search<'a, 's, 'm, P: Point> {
     room: &'a mut ClipRoom<'s, P>,
     /// The surface whose projected net the room holds.
     projected: Option<u32>,
+    /// The surface of which all was clipped that the ray may meet.
+    decided: Option<u32>,
 }
 
 impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
@@ -214,7 +216,10 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         )
     }
 
-    /// All roots in the domain of one patch.
+    /// All roots in the domain of one patch; under [`Acceptance::Proved`], where these are not plain, those of the region that all
+    /// patches span which the ray meets of the surface, as [`clipping`](super::clipping) finds them: a fold that the ray all
+    /// but touches is taken for met or not by the tolerance for a region's net, and each patch along it would be
+    /// another chance. Of one surface, so that the list is walked once more at most.
     fn clip(
         &mut self,
         number: u32,
@@ -222,12 +227,43 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         best: &mut Option<Best<P::Scalar>>,
         work: &mut Work,
     ) -> Result<(), Limit> {
+        if self.decided == Some(number) {
+            return Ok(());
+        }
+        let (before, bisections) = (*best, work.bisections);
+        let grazing = self.clip_region(number, patch.domain().bounds(), best, work)?;
+        let plain = !grazing && work.bisections == bisections;
+        if plain || self.decided.is_some() || self.limits.acceptance == Acceptance::Paper {
+            return Ok(());
+        }
+        let (ray, limits, nearby) = (self.ray, self.limits, self.nearby);
+        let mut region = Region { sides: patch.domain().bounds(), ..Region::WHOLE };
+        let others = |surface: u32, _: &Patch<P::Scalar>| surface != number;
+        nearby.visit(&ray.planes, ray.range.max, limits, work, others, |_, patch, _, _| {
+            region = region.joined(&Region { sides: patch.domain().bounds(), ..Region::WHOLE });
+            Ok(ray.range.max)
+        })?;
+        self.decided = Some(number);
+        *best = before;
+        self.clip_region(number, region.sides, best, work)?;
+        Ok(())
+    }
+
+    /// All roots in a rectangle of a surface's domain; whether any of them is grazing.
+    fn clip_region(
+        &mut self,
+        number: u32,
+        sides: [[P::Scalar; 2]; 2],
+        best: &mut Option<Best<P::Scalar>>,
+        work: &mut Work,
+    ) -> Result<bool, Limit> {
         let surface = self.view.surface(number as usize).ok_or(Limit::Slot)?;
-        let ray = self.ray;
-        let domain = Region { sides: patch.domain().bounds(), ..Region::WHOLE };
-        self.clipper(&surface)?.roots_within(domain, work, |root, work| {
-            Best::keep(best, Best { root, surface: number, kept: false }, &ray.planes, work);
-        })
+        let (planes, mut grazing) = (&self.ray.planes, false);
+        self.clipper(&surface)?.roots_within(Region { sides, ..Region::WHOLE }, work, |root, work| {
+            grazing |= root.grazing;
+            Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
+        })?;
+        Ok(grazing)
     }
 
     /// A clipper of a surface, its net projected.
