@@ -39,7 +39,7 @@ impl Picture {
 
     /// The lines to trace.
     pub fn lines(&self) -> impl Iterator<Item = u32> {
-        (self.every / 2..self.size[1]).step_by(self.every as usize)
+        (self.every / 2..self.size[1]).step_by(self.every.max(1) as usize)
     }
 
     /// The x of a column.
