@@ -20,7 +20,7 @@ fn inputs(folder: &str, target: &str) -> Vec<PathBuf> {
 fn replay(folder: &str) -> usize {
     let mut broken = Vec::new();
     let mut count = 0;
-    for (target, check) in TARGETS {
+    for &(target, check) in TARGETS {
         for path in inputs(folder, target) {
             let bytes = fs::read(&path).expect("the file can be read");
             count += 1;
@@ -48,7 +48,7 @@ fn past_failures_hold() {
 /// Random bytes through every target, with the smallest that breaks a claim. `PROPTEST_CASES=N` runs N for each.
 #[test]
 fn random_bytes_hold() {
-    for (target, check) in TARGETS {
+    for &(target, check) in TARGETS {
         let bytes = prop_oneof![
             // Many zeros, as of an ordinary case; and none.
             prop::collection::vec(prop_oneof![Just(0), any::<u8>()], 0..300),

@@ -3,24 +3,35 @@
 use crate::bytes::Bytes;
 use crate::claims::{in_range, within_limits};
 use crate::common::Kind;
-use crate::input::{Case, OfKind, any_limits, any_subdivision, budgets_of, interval, with_kind};
-use crate::lane::{Lane, Way};
-use crate::ready::prepare;
+use crate::input::{Case, OfKind, any_limits, any_subdivision, budgets_of, in_kernel, interval, with_kind};
+use crate::lane::{Answer, Lane, Way};
+use crate::ready::{Takes, prepare};
+use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
 use crate::scribble::scribble;
+use patchray::limits::{Limits, Work};
+use patchray::line::Window;
+use patchray::ray::Interval;
 use patchray::scalar::Scalar;
+use std::fmt::Debug;
 
 pub(crate) fn check(bytes: &[u8]) {
     let mut bytes = Bytes::new(bytes);
+    let method = usize::from(bytes.byte()) % (Way::ALL.len() + InView::ALL.len());
     let case = Case::any(&mut bytes, 3);
-    with_kind(&case, bytes, Budgets);
+    match Way::ALL.get(method) {
+        Some(&way) => with_kind(&case, bytes, OfNoView(way)),
+        None => with_kind(&case, bytes, OfView(InView::ALL[method - Way::ALL.len()])),
+    }
 }
 
-struct Budgets;
+/// A ray of no view.
+struct OfNoView(Way);
 
-impl OfKind for Budgets {
+impl OfKind for OfNoView {
     fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
+        let OfNoView(way) = self;
         let surfaces = case.model.surfaces.len();
-        let Some(prepared) = prepare::<P>(&case.model, &any_subdivision(&mut bytes)) else {
+        let Some(prepared) = prepare::<P>(&case.model, &any_subdivision(&mut bytes), way.takes()) else {
             return;
         };
         let line = case.ray(&mut bytes);
@@ -31,44 +42,89 @@ impl OfKind for Budgets {
         let mut lane = Lane::<P>::new(surfaces);
         scribble(&mut bytes, &mut lane.remembered);
         let (kept, scan_line) = (lane.remembered.clone(), bytes.count());
-        let most = any_limits::<P::Scalar>(&mut bytes);
-        for way in Way::ALL {
-            let mut run = |limits: &_| {
-                lane.remembered.clone_from(&kept);
-                let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, limits);
-                within_limits(&lane.work, limits, way);
-                (answer, lane.work)
+        larger_and_smaller(&mut bytes, [interval.min(), interval.max()], surfaces, way, |limits| {
+            lane.remembered.clone_from(&kept);
+            let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, limits);
+            (answer, lane.work)
+        });
+    }
+}
+
+/// A ray of a view, and one before it on its line, which leaves something to remember.
+struct OfView(InView);
+
+impl OfKind for OfView {
+    fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
+        let OfView(method) = self;
+        let surfaces = case.model.surfaces.len();
+        let Some(prepared) = prepare::<P>(&case.model, &any_subdivision(&mut bytes), Takes::in_view(method)) else {
+            return;
+        };
+        let camera = in_kernel::<P::Scalar>(&case.camera(&mut bytes));
+        let Ok(mut room) = ViewRoom::for_view(&prepared, method.has_patches(), &camera) else {
+            return;
+        };
+        let view = room.build(&prepared, method.has_patches(), &camera).expect("as was asked for");
+        let [before, x, y] = [0; 3].map(|_| P::Scalar::from_f64(f64::from(bytes.byte() as i8) / 128.0));
+        let one = P::Scalar::ONE;
+        let window = Window { x: [-one, one], y: [y, y] };
+        let range = [P::Scalar::ZERO, P::Scalar::INFINITY];
+        let (Ok(first), Ok(ray)) = (view.ray([before, y], &Interval::ahead()), view.ray([x, y], &Interval::ahead()))
+        else {
+            return;
+        };
+        let mut line_room = LineRoom::for_any(&prepared, 1 + bytes.below(20));
+        let mut thread = Thread::<P>::new(surfaces);
+        scribble(&mut bytes, &mut thread.remembered);
+        scribble(&mut bytes, &mut thread.followed);
+        thread.last = bytes.count();
+        let scan_line = bytes.count();
+        let mut line = line_room.line(&view, method, window).expect("as many spans as there can be");
+        let _ = thread.trace(method, &view, &mut line, scan_line, &first, &any_limits(&mut bytes));
+        let (remembered, followed, last) = (thread.remembered.clone(), thread.followed.clone(), thread.last);
+        larger_and_smaller(&mut bytes, range, surfaces, method, |limits| {
+            thread.remembered.clone_from(&remembered);
+            thread.followed.clone_from(&followed);
+            thread.last = last;
+            // The list of a line is of the rays before, too: each call begins with the same.
+            let mut line = line_room.line(&view, method, window).expect("as before");
+            let answer = thread.trace(method, &view, &mut line, scan_line, &ray, limits);
+            (answer, thread.work)
+        });
+    }
+}
+
+/// Runs a call with some budgets, with others that are smaller by a little or by much, and with others smaller still.
+fn larger_and_smaller<S: Scalar>(
+    bytes: &mut Bytes<'_>,
+    range: [S; 2],
+    surfaces: usize,
+    method: impl Debug + Copy,
+    mut call: impl FnMut(&Limits<S>) -> (Answer<S>, Work),
+) {
+    let mut limits = any_limits::<S>(bytes);
+    let mut larger = None;
+    for _ in 0..3 {
+        let (answer, work) = call(&limits);
+        within_limits(&work, &limits, method);
+        if let Some(hit) = answer.unwrap_or_else(|gave_up| gave_up.best) {
+            in_range(&hit, range, surfaces, (method, &limits));
+        }
+        if let Some((most, more_work, more)) = larger {
+            if answer.is_ok() {
+                // No bound was met, so that a larger one changes nothing at all.
+                assert_eq!((more, more_work), (answer, work), "{method:?}: with {most:?}, and with {limits:?}");
+            }
+            let (more, less) = (more_work.counts(), work.counts());
+            assert!(more.iter().zip(less).all(|(&more, less)| less <= more), "{method:?}: {work:?} of {more_work:?}");
+        }
+        larger = Some((limits, work, answer));
+        for budget in budgets_of(&mut limits) {
+            *budget = match bytes.below(4) {
+                0 | 1 => *budget,
+                2 => budget.saturating_sub(u32::from(bytes.byte())),
+                _ => (*budget).min(u32::from(bytes.byte()) / 2),
             };
-            let (full, used) = run(&most);
-            // Some budgets smaller than those, by a little or by much, and others smaller still.
-            let mut small = most;
-            let mut steps = vec![(most, full, used)];
-            for _ in 0..2 {
-                for budget in budgets_of(&mut small) {
-                    *budget = match bytes.below(4) {
-                        0 | 1 => *budget,
-                        2 => budget.saturating_sub(u32::from(bytes.byte())),
-                        _ => (*budget).min(u32::from(bytes.byte()) / 2),
-                    };
-                }
-                let (answer, work) = run(&small);
-                steps.push((small, answer, work));
-            }
-            for (limits, answer, _) in &steps {
-                if let Some(hit) = answer.unwrap_or_else(|gave_up| gave_up.best) {
-                    in_range(&hit, [interval.min(), interval.max()], surfaces, (way, limits));
-                }
-            }
-            // The larger, and then the smaller.
-            for pair in steps.windows(2) {
-                let [(larger, most, used), (smaller, least, took)] = pair else { unreachable!("pairs") };
-                if least.is_ok() {
-                    // No bound was met, so that a larger one changes nothing at all.
-                    assert_eq!((most, used), (least, took), "{way:?}: with {larger:?}, and with {smaller:?}");
-                }
-                let (more, less) = (used.counts(), took.counts());
-                assert!(more.iter().zip(less).all(|(&more, less)| less <= more), "{way:?}: {took:?} of {used:?}");
-            }
         }
     }
 }

@@ -30,6 +30,11 @@ impl<'b> Bytes<'b> {
         usize::from(self.byte() % count)
     }
 
+    /// One of these.
+    pub(crate) fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[usize::from(self.byte()) % all.len()]
+    }
+
     /// True for one byte in `count`, and not for 0, so that an input that ends early is an ordinary one.
     pub(crate) fn rarely(&mut self, count: u8) -> bool {
         self.below(count) == usize::from(count - 1)

@@ -13,16 +13,19 @@ use patchray::scalar::Scalar;
 
 pub(crate) fn check(bytes: &[u8]) {
     let mut bytes = Bytes::new(bytes);
+    let way = bytes.one_of(&[Way::NewtonCoherentProving, Way::ClippingCoherent, Way::NewtonProving]);
     let case = Case::tame(&mut bytes, 3, 6);
-    with_kind(&case, bytes, Coherence);
+    with_kind(&case, bytes, Coherence(way));
 }
 
-struct Coherence;
+/// By clipping, and by this.
+struct Coherence(Way);
 
 impl OfKind for Coherence {
     fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
+        let Coherence(way) = self;
         let surfaces = case.model.surfaces.len();
-        let Some(prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes)) else {
+        let Some(prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes), way.takes()) else {
             return;
         };
         let mut lane = Lane::<P>::new(surfaces);
@@ -49,10 +52,8 @@ impl OfKind for Coherence {
                 continue;
             };
             let range = [interval.min(), interval.max()];
-            let kept = lane.remembered.clone();
             let mut answers = Vec::new();
-            for way in [Way::Clipping, Way::NewtonProving, Way::NewtonCoherentProving, Way::ClippingCoherent] {
-                lane.remembered.clone_from(&kept);
+            for way in [Way::Clipping, way] {
                 let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, &limits);
                 within_limits(&lane.work, &limits, way);
                 within_worst_case(&lane.work, &limits, &way.extent(&prepared, limits.acceptance), way);

@@ -234,17 +234,18 @@ pub(crate) fn number<S: Scalar>(bytes: &mut Bytes<'_>) -> S {
     }
 }
 
-/// Budgets that end any call within a millisecond or so: an input is to be done with soon, whatever it is.
+/// Budgets that end any call within a fraction of a millisecond: an input is to be done with soon, whatever it is. More would
+/// decide a few more rays of many roots, and halve the number of inputs in a given time.
 fn usual<S: Scalar>() -> Limits<S> {
     Limits {
         surfaces: 1000,
-        nodes: 10_000,
-        patches: 5000,
-        voxels: 20_000,
-        spans: 20_000,
-        newton_steps: 1000,
-        clip_steps: 1000,
-        bisections: 500,
+        nodes: 2000,
+        patches: 1000,
+        voxels: 4000,
+        spans: 4000,
+        newton_steps: 300,
+        clip_steps: 300,
+        bisections: 100,
         ..Limits::default()
     }
 }

@@ -1,6 +1,7 @@
 //! The methods for rays of no view, with what one thread needs for them.
 
 use crate::common::{Kind, Prepared};
+use crate::ready::Takes;
 use patchray::limits::{Acceptance, Extent, GaveUp, Limits, Work};
 use patchray::method::{ClipScratch, Remembered, Scratch, clipping, clipping_coherent, newton, newton_coherent};
 use patchray::point::Point;
@@ -28,6 +29,17 @@ impl Way {
         Way::Clipping,
         Way::ClippingCoherent,
     ];
+
+    /// What of a model's preparation it takes.
+    pub(crate) fn takes(self) -> Takes {
+        match self {
+            Way::Newton | Way::NewtonProving => Takes { patches: true, tree: true, grids: false },
+            Way::NewtonCoherent | Way::NewtonCoherentProving | Way::ClippingCoherent => {
+                Takes { patches: true, tree: false, grids: true }
+            }
+            Way::Clipping => Takes::default(),
+        }
+    }
 
     /// Whether it answers rightly whatever the ray meets, as far as numbers can tell, under this rule.
     pub(crate) fn proves(self, acceptance: Acceptance) -> bool {
@@ -155,6 +167,7 @@ impl<P: Kind> Lane<P> {
 }
 
 /// What asking for all hits, and for any, came to.
+#[derive(Debug)]
 pub(crate) struct Lists<S> {
     /// All of them, unless a bound ran out.
     pub(crate) all: Result<Vec<Hit<S>>, GaveUp<S>>,

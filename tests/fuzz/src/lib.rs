@@ -14,6 +14,11 @@ mod reference;
 #[path = "../../views/rooms.rs"]
 mod rooms;
 
+#[cfg(feature = "capi")]
+#[allow(dead_code, unreachable_pub, unsafe_code, clippy::type_complexity)] // Likewise, and of addresses.
+#[path = "../../capi/lent.rs"]
+mod lent;
+
 mod bytes;
 mod claims;
 mod input;
@@ -23,6 +28,8 @@ mod scribble;
 mod truth;
 
 mod budgets;
+#[cfg(feature = "capi")]
+mod capi;
 mod coherence;
 mod honest;
 mod methods;
@@ -36,7 +43,7 @@ mod views;
 pub type Check = fn(&[u8]);
 
 /// All targets, by the names of their programs and folders.
-pub const TARGETS: [(&str, Check); 9] = [
+pub const TARGETS: &[(&str, Check)] = &[
     ("methods", methods::check),
     ("honest", honest::check),
     ("coherence", coherence::check),
@@ -46,6 +53,8 @@ pub const TARGETS: [(&str, Check); 9] = [
     ("preparation", preparation::check),
     ("splines", splines::check),
     ("readers", readers::check),
+    #[cfg(feature = "capi")]
+    ("capi", capi::check),
 ];
 
 /// Runs a target by its name.

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
-    let names = || patchray_fuzz::TARGETS.map(|(name, _)| name).join(", ");
+    let names = || patchray_fuzz::TARGETS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let Some(target) = arguments.next().filter(|name| patchray_fuzz::TARGETS.iter().any(|(known, _)| known == name))
     else {
         eprintln!("usage: patchray-fuzz TARGET FILE..; targets are {}", names());

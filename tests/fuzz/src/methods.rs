@@ -1,4 +1,4 @@
-//! Surfaces, rays and limits of any bits through every method for rays of no view.
+//! Surfaces, rays and limits of any bits through the methods for rays of no view, one at a time.
 
 use crate::bytes::Bytes;
 use crate::claims::{in_range, on_the_ray, within_limits, within_worst_case};
@@ -11,15 +11,17 @@ use patchray::scalar::Scalar;
 
 pub(crate) fn check(bytes: &[u8]) {
     let mut bytes = Bytes::new(bytes);
+    let way = bytes.one_of(&Way::ALL);
     let case = Case::any(&mut bytes, 3);
-    with_kind(&case, bytes, Methods);
+    with_kind(&case, bytes, Methods(way));
 }
 
-struct Methods;
+struct Methods(Way);
 
 impl OfKind for Methods {
     fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
-        let Some(prepared) = prepare::<P>(&case.model, &any_subdivision(&mut bytes)) else {
+        let Methods(way) = self;
+        let Some(prepared) = prepare::<P>(&case.model, &any_subdivision(&mut bytes), way.takes()) else {
             return;
         };
         let mut lane = Lane::<P>::new(case.model.surfaces.len());
@@ -33,28 +35,26 @@ impl OfKind for Methods {
                 continue;
             };
             let range = [interval.min(), interval.max()];
-            for way in Way::ALL {
-                let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, &limits);
-                within_limits(&lane.work, &limits, way);
-                let extent = way.extent(&prepared, limits.acceptance);
-                within_worst_case(&lane.work, &limits, &extent, way);
-                // What was found before a bound ran out is a root too, if no answer.
-                let found = answer.unwrap_or_else(|gave_up| gave_up.best);
-                let lists = lane.all_and_any(way, &prepared, &ray, &interval, &limits);
-                let mut hits: Vec<_> = found.into_iter().collect();
-                if let Some(lists) = lists {
-                    for work in &lists.work {
-                        within_limits(work, &limits, way);
-                        within_worst_case(work, &limits, &extent, way);
-                    }
-                    hits.extend(lists.any.unwrap_or_else(|gave_up| gave_up.best));
-                    hits.extend(lists.found);
-                    hits.extend(lists.all.map_or_else(|gave_up| gave_up.best, |_| None));
+            let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, &limits);
+            within_limits(&lane.work, &limits, way);
+            let extent = way.extent(&prepared, limits.acceptance);
+            within_worst_case(&lane.work, &limits, &extent, way);
+            // What was found before a bound ran out is a root too, if no answer.
+            let found = answer.unwrap_or_else(|gave_up| gave_up.best);
+            let lists = lane.all_and_any(way, &prepared, &ray, &interval, &limits);
+            let mut hits: Vec<_> = found.into_iter().collect();
+            if let Some(lists) = lists {
+                for work in &lists.work {
+                    within_limits(work, &limits, way);
+                    within_worst_case(work, &limits, &extent, way);
                 }
-                for hit in &hits {
-                    in_range(hit, range, case.model.surfaces.len(), way);
-                    on_the_ray(hit, case, &line, &limits, way);
-                }
+                hits.extend(lists.any.unwrap_or_else(|gave_up| gave_up.best));
+                hits.extend(lists.found);
+                hits.extend(lists.all.map_or_else(|gave_up| gave_up.best, |_| None));
+            }
+            for hit in &hits {
+                in_range(hit, range, case.model.surfaces.len(), way);
+                on_the_ray(hit, case, &line, &limits, way);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Preparation that may be refused: asked for its needs, given just that, and then it has to succeed.
 
 use crate::common::{Kind, Prepared, lower, subdivide_scratch};
+use crate::rooms::InView;
 use patchray::arena::Need;
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::patch::{Parallelepiped, Patch, Patches};
@@ -165,19 +166,50 @@ pub(crate) fn nets<'p, P: Kind>(model: &Model, points: &'p [Vec<P>]) -> Vec<Net<
 /// Scenes and grids of few voxels, so that an input is done with soon.
 pub(crate) const VOXELS: u32 = 4096;
 
-/// A model with all that any method needs; `None` if the kernel refuses it.
-pub(crate) fn prepare<P: Kind>(model: &Model, options: &Subdivision<P::Scalar>) -> Option<Prepared<P>> {
+/// What is prepared beside the scene; what is not stays empty.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Takes {
+    pub(crate) patches: bool,
+    /// Over patches.
+    pub(crate) tree: bool,
+    /// Over patches.
+    pub(crate) grids: bool,
+}
+
+impl Takes {
+    /// What a method for the rays of a view takes.
+    pub(crate) fn in_view(method: InView) -> Takes {
+        Takes { patches: method.has_patches(), ..Takes::default() }
+    }
+}
+
+/// A model with what a method takes; `None` if the kernel refuses it.
+pub(crate) fn prepare<P: Kind>(model: &Model, options: &Subdivision<P::Scalar>, takes: Takes) -> Option<Prepared<P>> {
+    prepare_within::<P>(model, options, VOXELS, takes)
+}
+
+/// The same with a scene and grids of so many voxels at most.
+pub(crate) fn prepare_within<P: Kind>(
+    model: &Model,
+    options: &Subdivision<P::Scalar>,
+    voxels: u32,
+    takes: Takes,
+) -> Option<Prepared<P>> {
     let points = points::<P>(model);
     let nets = nets(model, &points);
-    let scene_options = SceneOptions { voxels: VOXELS, ..SceneOptions::default() };
+    let scene_options = SceneOptions { voxels, ..SceneOptions::default() };
     let mut room = SceneRoom { points: vec![], surfaces: vec![], offsets: vec![], references: vec![], header: None };
     ask_and_fill(|sizes| room.build(&nets, &scene_options, sizes))?;
     let scene = room.scene()?;
     let mut cut = PatchRoom { patches: vec![], first: vec![], nodes: vec![], links: vec![] };
-    ask_and_fill(|sizes| cut.build(&scene, options, true, sizes))?;
+    if takes.patches {
+        ask_and_fill(|sizes| cut.build(&scene, options, takes.tree, sizes))?;
+    }
     let mut over = GridRoom { grids: vec![], offsets: vec![], references: vec![] };
-    let grid_options = GridOptions { voxels: VOXELS, ..GridOptions::default() };
-    ask_and_fill(|sizes| over.build(model.surfaces.len(), &cut.patches(), &grid_options, sizes))?;
+    let grid_options = GridOptions { voxels, ..GridOptions::default() };
+    if takes.grids {
+        ask_and_fill(|sizes| over.build(model.surfaces.len(), &cut.patches(), &grid_options, sizes))?;
+    }
     let header = room.header?;
     let SceneRoom { points, surfaces, offsets, references, .. } = room;
     let PatchRoom { patches, first, nodes, links } = cut;

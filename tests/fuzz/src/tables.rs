@@ -1,32 +1,40 @@
-//! Prepared tables of any bits: no panic, no work beyond the limits.
+//! Prepared tables of any bits: no panic, no work beyond the limits, by one method or another.
 
 use crate::bytes::Bytes;
 use crate::claims::within_limits;
 use crate::common::{Kind, Prepared};
 use crate::input::{Case, any_limits, in_kernel, interval, subdivision};
 use crate::lane::{Lane, Way};
-use crate::ready::prepare;
+use crate::ready::{Takes, prepare};
 use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
 use crate::scribble::{Slot, scribble};
+use patchray::limits::Limits;
 use patchray::line::Window;
 use patchray::point::{Plain, Weighted};
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
+use patchray::view::Camera;
+use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::trace::Precision;
 
 pub(crate) fn check(bytes: &[u8]) {
     let mut bytes = Bytes::new(bytes);
+    let method = usize::from(bytes.byte()) % (Way::ALL.len() + InView::ALL.len());
     let case = Case::tame(&mut bytes, 3, 6);
     match (case.precision, case.weighted) {
-        (Precision::F64, false) => any_bits::<Plain<f64>>(&case, bytes),
-        (Precision::F32, false) => any_bits::<Plain<f32>>(&case, bytes),
-        (Precision::F64, true) => any_bits::<Weighted<f64>>(&case, bytes),
-        (Precision::F32, true) => any_bits::<Weighted<f32>>(&case, bytes),
+        (Precision::F64, false) => any_bits::<Plain<f64>>(&case, method, bytes),
+        (Precision::F32, false) => any_bits::<Plain<f32>>(&case, method, bytes),
+        (Precision::F64, true) => any_bits::<Weighted<f64>>(&case, method, bytes),
+        (Precision::F32, true) => any_bits::<Weighted<f32>>(&case, method, bytes),
     }
 }
 
-fn any_bits<P: Kind + Slot>(case: &Case, mut bytes: Bytes<'_>) {
-    let Some(mut prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes)) else {
+/// By a method of `Way::ALL`, or of those in a view.
+fn any_bits<P: Kind + Slot>(case: &Case, method: usize, mut bytes: Bytes<'_>) {
+    let way = Way::ALL.get(method).copied();
+    let in_view = InView::ALL[method.saturating_sub(Way::ALL.len())];
+    let takes = way.map_or(Takes::in_view(in_view), Way::takes);
+    let Some(mut prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes), takes) else {
         return;
     };
     let line = case.ray(&mut bytes);
@@ -62,40 +70,53 @@ fn any_bits<P: Kind + Slot>(case: &Case, mut bytes: Bytes<'_>) {
             _ => scribble(&mut bytes, grid_references),
         }
     }
-    let [origin, direction] = [line.origin, line.direction].map(|v| v.map(P::Scalar::from_f64));
-    if let (Ok(ray), Some(interval)) = (prepared.scene().ray(origin, direction), interval(&line)) {
-        let mut lane = Lane::<P>::new(case.model.surfaces.len());
-        for way in Way::ALL {
-            // Twice, so that the coherent ones have something to remember.
-            for _ in 0..2 {
-                let _ = lane.closest(way, &prepared, 1, &ray, &interval, &limits);
-                within_limits(&lane.work, &limits, way);
-            }
-            if let Some(lists) = lane.all_and_any(way, &prepared, &ray, &interval, &limits) {
-                lists.work.iter().for_each(|work| within_limits(work, &limits, way));
-            }
-        }
+    match way {
+        Some(way) => of_no_view(way, &prepared, &line, &limits, case.model.surfaces.len()),
+        None => of_view(in_view, &prepared, &camera, &limits, case.model.surfaces.len()),
     }
-    for method in InView::ALL {
-        let Ok(mut room) = ViewRoom::for_view(&prepared, method.has_patches(), &camera) else {
-            return;
-        };
-        let Ok(view) = room.build(&prepared, method.has_patches(), &camera) else {
-            return;
-        };
-        let one = P::Scalar::ONE;
-        let window = Window { x: [-one, one], y: [P::Scalar::ZERO; 2] };
-        let mut line_room = LineRoom::for_any(&prepared, 5);
-        let Ok(mut line) = line_room.line(&view, method, window) else {
+}
+
+fn of_no_view<P: Kind>(way: Way, prepared: &Prepared<P>, line: &RayLine, limits: &Limits<P::Scalar>, surfaces: usize) {
+    let [origin, direction] = [line.origin, line.direction].map(|v| v.map(P::Scalar::from_f64));
+    let (Ok(ray), Some(interval)) = (prepared.scene().ray(origin, direction), interval(line)) else {
+        return;
+    };
+    let mut lane = Lane::<P>::new(surfaces);
+    // Twice, so that the coherent ones have something to remember.
+    for _ in 0..2 {
+        let _ = lane.closest(way, prepared, 1, &ray, &interval, limits);
+        within_limits(&lane.work, limits, way);
+    }
+    if let Some(lists) = lane.all_and_any(way, prepared, &ray, &interval, limits) {
+        lists.work.iter().for_each(|work| within_limits(work, limits, way));
+    }
+}
+
+fn of_view<P: Kind>(
+    method: InView,
+    prepared: &Prepared<P>,
+    camera: &Camera<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    surfaces: usize,
+) {
+    let Ok(mut room) = ViewRoom::for_view(prepared, method.has_patches(), camera) else {
+        return;
+    };
+    let Ok(view) = room.build(prepared, method.has_patches(), camera) else {
+        return;
+    };
+    let one = P::Scalar::ONE;
+    let window = Window { x: [-one, one], y: [P::Scalar::ZERO; 2] };
+    let mut line_room = LineRoom::for_any(prepared, 5);
+    let Ok(mut line) = line_room.line(&view, method, window) else {
+        return;
+    };
+    let mut thread = Thread::<P>::new(surfaces);
+    for x in [-0.5, 0.0, 0.03] {
+        let Ok(ray) = view.ray([P::Scalar::from_f64(x), P::Scalar::ZERO], &Interval::ahead()) else {
             continue;
         };
-        let mut thread = Thread::<P>::new(case.model.surfaces.len());
-        for x in [-0.5, 0.0, 0.03] {
-            let Ok(ray) = view.ray([P::Scalar::from_f64(x), P::Scalar::ZERO], &Interval::ahead()) else {
-                continue;
-            };
-            let _ = thread.trace(method, &view, &mut line, 1, &ray, &limits);
-            within_limits(&thread.work, &limits, method);
-        }
+        let _ = thread.trace(method, &view, &mut line, 1, &ray, limits);
+        within_limits(&thread.work, limits, method);
     }
 }

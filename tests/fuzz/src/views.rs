@@ -1,11 +1,11 @@
-//! Views and their scan lines: any surfaces, cameras, windows and limits, and coherence memory of any bits, through every
-//! method for the rays of a view.
+//! Views and their scan lines: any surfaces, cameras, windows and limits, and coherence memory of any bits, through the methods
+//! for the rays of a view, one at a time; one that proves what it answers beside clipping.
 
 use crate::bytes::Bytes;
 use crate::claims::{in_range, on_the_ray, within_limits, within_worst_case};
 use crate::common::Kind;
 use crate::input::{Case, OfKind, any_limits, in_kernel, limits, number, subdivision, with_kind};
-use crate::ready::prepare;
+use crate::ready::{Takes, prepare};
 use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
 use crate::scribble::scribble;
 use crate::truth::{alike, none_lost, outcome};
@@ -18,11 +18,12 @@ use patchray_host::scene::trace::Method;
 
 pub(crate) fn check(bytes: &[u8]) {
     let mut bytes = Bytes::new(bytes);
+    let method = bytes.one_of(&InView::ALL);
     let case = Case::any(&mut bytes, 3);
-    with_kind(&case, bytes, Views);
+    with_kind(&case, bytes, Views(method));
 }
 
-struct Views;
+struct Views(InView);
 
 /// Whether a method answers rightly whatever the ray meets, as far as numbers can tell, if it is asked to prove it.
 fn proves(method: InView) -> bool {
@@ -31,8 +32,9 @@ fn proves(method: InView) -> bool {
 
 impl OfKind for Views {
     fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
+        let Views(method) = self;
         let surfaces = case.model.surfaces.len();
-        let Some(prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes)) else {
+        let Some(prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes), Takes::in_view(method)) else {
             return;
         };
         let camera = case.camera(&mut bytes);
@@ -64,7 +66,8 @@ impl OfKind for Views {
         scribble(&mut bytes, &mut thread.followed);
         thread.last = bytes.count();
         let mut answers = vec![Vec::new(); places.len()];
-        for method in InView::ALL {
+        let both = [InView::ClippingBare, method];
+        for &method in if compared && proves(method) { &both[..] } else { &both[1..] } {
             let Ok(mut room) = ViewRoom::for_view(&prepared, method.has_patches(), &in_kernel) else {
                 return;
             };

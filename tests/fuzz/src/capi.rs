@@ -1,0 +1,97 @@
+//! The C interface: any addresses, counts and bits that lie within memory of one's own.
+//!
+//! All that a call is given lies in one [`Field`] with gaps between. Each address may be null, misaligned, or that of anything
+//! else there; each count may be too small, too large for what lies there, or for the address space. What has to be refused is
+//! worked out here once more, from nothing but addresses and sizes.
+#![allow(unsafe_code, reason = "the interface takes addresses")]
+
+mod arguments;
+mod field;
+mod rust;
+
+use crate::bytes::Bytes;
+use crate::common::Kind;
+use crate::input::Case;
+use crate::lent::InC;
+use crate::scribble::Slot;
+use arguments::Prepared;
+use field::{Call, Field};
+use patchray::capi::*;
+use patchray::point::{Plain, Weighted};
+use patchray_host::scene::trace::Precision;
+
+pub(crate) fn check(bytes: &[u8]) {
+    let mut bytes = Bytes::new(bytes);
+    let function = bytes.byte();
+    let case = Case::any(&mut bytes, 2);
+    match (case.precision, case.weighted) {
+        (Precision::F64, false) => of_kind::<Plain<f64>>(&case, function, bytes),
+        (Precision::F32, false) => of_kind::<Plain<f32>>(&case, function, bytes),
+        (Precision::F64, true) => of_kind::<Weighted<f64>>(&case, function, bytes),
+        (Precision::F32, true) => of_kind::<Weighted<f32>>(&case, function, bytes),
+    }
+}
+
+/// Codes that say what is wrong with addresses and counts.
+const OF_ADDRESSES: [i32; 4] = [PATCHRAY_NULL, PATCHRAY_MISALIGNED, PATCHRAY_OVERLAP, PATCHRAY_COUNT];
+
+/// Codes that say what is wrong with what stands there; any of these may be seen first.
+const OF_CONTENTS: [i32; 11] = [
+    PATCHRAY_LAYOUT_DIFFERS,
+    PATCHRAY_OPTION,
+    PATCHRAY_DEGREE,
+    PATCHRAY_POINTS,
+    PATCHRAY_POINT_NOT_FINITE,
+    PATCHRAY_WEIGHT,
+    PATCHRAY_RAY_NAN,
+    PATCHRAY_RAY_INFINITE,
+    PATCHRAY_RAY_DIRECTION,
+    PATCHRAY_RAY_RANGE,
+    PATCHRAY_RAY_INTERVAL,
+];
+
+/// The functions: three preparations, the methods, all hits, the normal.
+const FUNCTIONS: u8 = 11;
+
+fn of_kind<P: InC + Kind + Slot>(case: &Case, function: u8, mut bytes: Bytes<'_>) {
+    // As it is meant, or with anything in it.
+    let spoilt = function >= 128;
+    let function = usize::from(function % FUNCTIONS);
+    let mut field = Field::new();
+    let Some(mut prepared) = Prepared::<P>::of(case, function, &mut field, &mut bytes) else {
+        return;
+    };
+    if !spoilt {
+        return prepared.as_in_rust(case, function);
+    }
+    prepared.scribble(&mut bytes);
+    let mut call = Call::new(&field, &mut bytes);
+    prepared.spoil(function, &mut call);
+    let faults = call.faults();
+    let before = field.copy();
+    // SAFETY: each address is null, misaligned, or leads to memory of the field as large as said, and structs that hold
+    // addresses hold such.
+    let code = unsafe { prepared.call(function) };
+    let changed = field.changed(&before);
+    // SAFETY: it is a string for each code.
+    let name = unsafe { std::ffi::CStr::from_ptr(patchray_name(code)) }.to_str().expect("a name");
+    assert!(name != "unknown", "{code} is no code");
+    if OF_ADDRESSES.contains(&code) {
+        assert!(faults.contains(&code), "{name}, but all that is wrong is {faults:?}");
+    }
+    if !faults.is_empty() {
+        assert!(faults.contains(&code) || OF_CONTENTS.contains(&code), "{name}, though {faults:?} are to be refused");
+    }
+    let refused = OF_ADDRESSES.contains(&code) || OF_CONTENTS.contains(&code);
+    for at in changed {
+        let lent = if refused { prepared.says_why(function) } else { None };
+        let allowed = if refused { lent.as_slice() } else { &prepared.written };
+        assert!(
+            allowed.iter().any(|range| range.contains(&at)),
+            "{name}: byte {at:#x} was written, beyond {allowed:x?}"
+        );
+    }
+    if (PATCHRAY_MISS..=PATCHRAY_HIT).contains(&code) {
+        prepared.within_limits(function);
+    }
+}
