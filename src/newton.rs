@@ -315,10 +315,11 @@ fn weighted<P: Point>() -> P::Scalar {
 /// 15 × 15 two mostly do.
 const POLISHING: u32 = 3;
 
-/// The sine below which an angle between ray and surface makes a hit grazing.
+/// The sine below which an angle between ray and surface makes a hit grazing. Of a tolerance below rounding it is that of
+/// rounding: what a Jacobian of nothing but roundings says is no angle.
 #[inline(always)]
 fn sine<S: Scalar>(tolerance: S) -> S {
-    tolerance.sqrt() * S::from_u32(4)
+    tolerance.greater(noise()).sqrt() * S::from_u32(4)
 }
 
 /// One ray and one surface.

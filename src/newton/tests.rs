@@ -1,7 +1,7 @@
 use super::*;
 use crate::bernstein::Basis;
 use crate::frame::{Aabb, Frame};
-use crate::point::Plain;
+use crate::point::{Plain, Weighted};
 use crate::ray::Interval;
 use crate::surface::Net;
 
@@ -100,4 +100,35 @@ fn a_step_by_a_singular_jacobian_is_not_believed() {
         roots += 1;
     }
     assert!(roots + none > 3000 && none > 100, "{roots} {none}");
+}
+
+/// A surface of straight lines from a pole, and a ray along one of them: all but singular, but by more than the step refuses.
+/// With a tolerance far below rounding no angle was too small to be one, and steps were believed that led 1e-5 off the ray.
+#[test]
+fn a_tolerance_below_rounding_makes_no_jacobian_regular() {
+    let pole = [3.0; 3];
+    let points = [([-0.0625, -0.0625, -5.125], 4.0), (pole, 0.796875), ([3.0, 0.0625, 0.0], 0.015625), (pole, 0.765625)];
+    let bounds = points.iter().fold(Aabb::EMPTY, |all, (point, _)| all.with(*point));
+    let frame = Frame::new(bounds);
+    let scaled = points.map(|(point, weight)| Weighted::new(frame.from_nets(point), weight / 4.0));
+    let net = Net::new(1, 1, &scaled).unwrap();
+    let surface = Surface { number: 0, net, bend: net.bend() };
+    let limits = Limits { tolerance: 1e-52, ..Limits::default() };
+    let (mut flat, mut basis) = (heapless::Vec::<_, 4>::new(), Basis::<f64, 2>::new());
+    let mut basis = basis.view();
+    for k in 0..64 {
+        let along = net.position(f64::from(k) / 63.0, 0.5, &mut basis).unwrap();
+        let towards = [0, 1, 2].map(|axis| along[axis] - frame.from_nets(pole)[axis]);
+        let ray = frame.ray(pole, towards).unwrap();
+        let Some((planes, _)) = frame.enter(&ray, &Interval::ahead()) else { continue };
+        for start in (0..256).map(|start| [f64::from(start % 16) / 15.0, f64::from(start / 16) / 15.0]) {
+            let mut work = Work::default();
+            let mut solver = Solver::new(&surface, &planes, &limits, &mut flat, &mut basis);
+            let Some(root) = solver.solve(start, &mut work).unwrap() else { continue };
+            let point = net.position(root.u, root.v, &mut basis).unwrap();
+            let (o, d) = (planes.origin(), planes.direction());
+            let off = (0..3).fold(0.0, |off: f64, k| off.max((point[k] - o[k] - d[k] * root.depth).abs()));
+            assert!(off <= 1e-9, "{root:?} is {off:e} off the ray");
+        }
+    }
 }
