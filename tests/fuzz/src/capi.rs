@@ -82,7 +82,9 @@ fn of_kind<P: InC + Kind + Slot>(case: &Case, function: u8, mut bytes: Bytes<'_>
     if !faults.is_empty() {
         assert!(faults.contains(&code) || OF_CONTENTS.contains(&code), "{name}, though {faults:?} are to be refused");
     }
-    let refused = OF_ADDRESSES.contains(&code) || OF_CONTENTS.contains(&code);
+    // Control points are looked at where lent memory has been cleared.
+    let of_points = [PATCHRAY_POINT_NOT_FINITE, PATCHRAY_WEIGHT].contains(&code);
+    let refused = OF_ADDRESSES.contains(&code) || OF_CONTENTS.contains(&code) && !of_points;
     for at in changed {
         let lent = if refused { prepared.says_why(function) } else { None };
         let allowed = if refused { lent.as_slice() } else { &prepared.written };
