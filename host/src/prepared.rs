@@ -66,21 +66,39 @@ where
     Box::new(MethodTracer::<M, P>::new(views, settings.limits()))
 }
 
-/// The tracer of the method M for the scan lines of a picture.
-fn view_tracer<'m, M, P>(
+/// Which rays are traced beside those of a picture's scan lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Others {
+    /// Any that ask for the closest hit, such as those that mirrors send on.
+    pub closest: bool,
+    /// Any that ask whether something lies on them, such as those to lights.
+    pub any: bool,
+}
+
+/// What traces the rays of a picture.
+pub struct Tracers<'m> {
+    /// Those of its scan lines, and others if wanted: of the closest hits.
+    pub picture: Box<dyn Tracer + 'm>,
+    /// Those that ask whether something lies on them, if wanted: of the first hits that are found.
+    pub any: Option<Box<dyn Tracer + 'm>>,
+}
+
+/// The tracers of a picture, the method M being that of its scan lines.
+fn view_tracers<'m, M, P>(
     lowered: &'m mut Lowered<P>,
     picture: &camera::View,
     settings: &Settings,
     options: LineOptions,
-    others: bool,
-) -> Result<Box<dyn Tracer + 'm>, LowerError>
+    others: Others,
+) -> Result<Tracers<'m>, LowerError>
 where
     M: ViewMethod<P> + 'm,
     P: Point,
 {
     let (views, seen) = lowered.seen(picture)?;
-    let others = others.then(|| rays_tracer(views, settings));
-    Ok(Box::new(ViewTracer::<M, P>::new((views.scene, seen), picture, settings.limits(), options, others)))
+    let closest = others.closest.then(|| rays_tracer(views, settings));
+    let picture = ViewTracer::<M, P>::new((views.scene, seen), picture, settings.limits(), options, closest);
+    Ok(Tracers { picture: Box::new(picture), any: others.any.then(|| any_tracer(views, settings)) })
 }
 
 fn most_lane_bytes_of<P: Point>(method: Which, lowered: &Lowered<P>) -> LaneBytes {
@@ -107,6 +125,17 @@ fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dy
         Which::NewtonCoherent | Which::NewtonPredicted => tracer::<NewtonCoherent<Bare>, _>(views, settings),
         Which::Clipping => tracer::<Clipping, _>(views, settings),
         Which::ClippingCoherent | Which::ClippingPredicted => tracer::<ClippingCoherent, _>(views, settings),
+    }
+}
+
+/// The tracer of any rays, of the first hits that are found, by [`Which::of_any_hits`].
+fn any_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
+    match settings.method.of_any_hits() {
+        Which::Newton if settings.acceptance == Acceptance::Proved => {
+            tracer::<AnyHit<Newton<Proving>>, _>(views, settings)
+        }
+        Which::Newton => tracer::<AnyHit<Newton<Bare>>, _>(views, settings),
+        _ => tracer::<AnyHit<Clipping>, _>(views, settings),
     }
 }
 
@@ -144,29 +173,37 @@ impl Prepared {
         any!(self, lowered => lowered.take_view(picture, given))
     }
 
-    /// The tracer of the picture's scan lines, under the limits and by the method of `settings`: of the closest hits. The
-    /// view's memory has to have been taken. With `others` it traces any other rays as well, as [`Prepared::tracer`] does.
+    /// The tracers of the picture's rays without a view: its scan lines' are then traced as any others.
+    pub fn tracers(&self, settings: &Settings, others: Others) -> Tracers<'_> {
+        any!(self, lowered => {
+            let views = Views::of(lowered);
+            Tracers { picture: rays_tracer(views, settings), any: others.any.then(|| any_tracer(views, settings)) }
+        })
+    }
+
+    /// The tracers of the picture's rays, under the limits and by the method of `settings`, and of what `others` wants. The
+    /// view's memory has to have been taken.
     ///
     /// # Errors
     /// As [`Lowered::seen`].
-    pub fn view_tracer(
+    pub fn view_tracers(
         &mut self,
         picture: &camera::View,
         settings: &Settings,
         options: LineOptions,
-        others: bool,
-    ) -> Result<Box<dyn Tracer + '_>, LowerError> {
+        others: Others,
+    ) -> Result<Tracers<'_>, LowerError> {
         let proves = settings.acceptance == Acceptance::Proved;
         any!(self, lowered => match settings.method {
-            Which::Newton if proves => view_tracer::<Newton<Proving>, _>(lowered, picture, settings, options, others),
-            Which::Newton => view_tracer::<Newton<Bare>, _>(lowered, picture, settings, options, others),
-            Which::NewtonCoherent if proves => view_tracer::<NewtonCoherent<Proving>, _>(lowered, picture, settings, options, others),
-            Which::NewtonCoherent => view_tracer::<NewtonCoherent<Bare>, _>(lowered, picture, settings, options, others),
-            Which::Clipping => view_tracer::<Clipping, _>(lowered, picture, settings, options, others),
-            Which::ClippingCoherent => view_tracer::<ClippingCoherent, _>(lowered, picture, settings, options, others),
-            Which::NewtonPredicted if proves => view_tracer::<NewtonPredicted<Proving>, _>(lowered, picture, settings, options, others),
-            Which::NewtonPredicted => view_tracer::<NewtonPredicted<Bare>, _>(lowered, picture, settings, options, others),
-            Which::ClippingPredicted => view_tracer::<ClippingPredicted, _>(lowered, picture, settings, options, others),
+            Which::Newton if proves => view_tracers::<Newton<Proving>, _>(lowered, picture, settings, options, others),
+            Which::Newton => view_tracers::<Newton<Bare>, _>(lowered, picture, settings, options, others),
+            Which::NewtonCoherent if proves => view_tracers::<NewtonCoherent<Proving>, _>(lowered, picture, settings, options, others),
+            Which::NewtonCoherent => view_tracers::<NewtonCoherent<Bare>, _>(lowered, picture, settings, options, others),
+            Which::Clipping => view_tracers::<Clipping, _>(lowered, picture, settings, options, others),
+            Which::ClippingCoherent => view_tracers::<ClippingCoherent, _>(lowered, picture, settings, options, others),
+            Which::NewtonPredicted if proves => view_tracers::<NewtonPredicted<Proving>, _>(lowered, picture, settings, options, others),
+            Which::NewtonPredicted => view_tracers::<NewtonPredicted<Bare>, _>(lowered, picture, settings, options, others),
+            Which::ClippingPredicted => view_tracers::<ClippingPredicted, _>(lowered, picture, settings, options, others),
         })
     }
 
@@ -187,17 +224,8 @@ impl Prepared {
 
     /// The same of any hits, the first that are found; `None` if the method looks for no other than the closest.
     pub fn tracer_of_any(&self, settings: &Settings) -> Option<Box<dyn Tracer + '_>> {
-        any!(self, lowered => {
-            let views = Views::of(lowered);
-            match settings.method {
-                Which::Newton if settings.acceptance == Acceptance::Proved => {
-                    Some(tracer::<AnyHit<Newton<Proving>>, _>(views, settings))
-                }
-                Which::Newton => Some(tracer::<AnyHit<Newton<Bare>>, _>(views, settings)),
-                Which::Clipping => Some(tracer::<AnyHit<Clipping>, _>(views, settings)),
-                _ => None,
-            }
-        })
+        let wanted = settings.method.of_any_hits() == settings.method;
+        wanted.then(|| any!(self, lowered => any_tracer(Views::of(lowered), settings)))
     }
 
     /// The most work that a ray of no view can take: see [`Lowered::worst_case`].

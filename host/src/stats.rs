@@ -12,6 +12,7 @@ use crate::scanline::{LaneBytes, Tally};
 use crate::scene::sampling::Sampling;
 use crate::scene::trace::{Method, Precision};
 use crate::settings::Settings;
+use crate::shade::map::MapUsed;
 
 /// The number of this format; it changes when a field changes its meaning or goes away, not when one is added.
 pub const SCHEMA: u32 = 1;
@@ -36,6 +37,23 @@ pub struct RaysByKind {
     pub camera: u64,
     /// Those that mirrors sent on.
     pub mirrored: u64,
+    /// Those that asked whether a light reaches a point.
+    pub shadow: u64,
+    /// Those that drew shadow maps.
+    pub map: u64,
+}
+
+/// The methods of a picture's rays, by what the rays are for; of none that there are not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct MethodsByKind {
+    /// Of the camera's rays.
+    pub camera: Method,
+    /// Of those that mirrors send on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mirrored: Option<Method>,
+    /// Of those to lights.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shadow: Option<Method>,
 }
 
 /// What a run did. Counters are sums over all rays and do not depend on the number of threads.
@@ -63,6 +81,12 @@ pub struct Stats {
     /// something is of metal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_samples: Option<u32>,
+    /// Methods by what rays are for, for a picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub methods_by_kind: Option<MethodsByKind>,
+    /// The shadow maps, for a picture.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shadow_maps: Vec<MapUsed>,
     /// The method.
     pub method: Method,
     /// The precision.
@@ -148,6 +172,8 @@ impl Stats {
             samples: None,
             rays_by_kind: None,
             light_samples: None,
+            methods_by_kind: None,
+            shadow_maps: Vec::new(),
             method: settings.method,
             precision: settings.precision,
             asked: Asked::Closest,

@@ -6,7 +6,7 @@ use patchray::limits::Work;
 
 use crate::lower::{LowerError, Stages};
 use crate::memory::Bytes;
-use crate::prepared::Prepared;
+use crate::prepared::{Others, Prepared, Tracers};
 use crate::scanline::Tracer;
 use crate::scanline::view::LineOptions;
 use crate::scene::appearance::Appearance;
@@ -30,16 +30,18 @@ pub struct Wishes {
     pub coherence: bool,
     /// Whether rays that are none of the picture's are traced, such as those that mirrors send on.
     pub others: bool,
+    /// Whether rays are traced that ask whether something lies on them, such as those to lights.
+    pub any: bool,
 }
 
 impl Wishes {
     /// Primary rays alone, by the means of the method.
-    pub const PRIMARY: Self = Wishes { view: true, patches: false, coherence: true, others: false };
+    pub const PRIMARY: Self = Wishes { view: true, patches: false, coherence: true, others: false, any: false };
 
     /// What drawing a scene of this appearance takes.
     pub fn of(appearance: &Appearance) -> Self {
         let others = appearance.materials.iter().any(|material| material.reflect > 0.0);
-        Wishes { others, ..Wishes::PRIMARY }
+        Wishes { others, any: appearance.has_shadow_rays(), ..Wishes::PRIMARY }
     }
 }
 
@@ -78,11 +80,14 @@ impl Viewed {
             Method::Clipping if wishes.patches => Stages::PATCHES,
             _ => Stages::of_view(method),
         };
-        let stages = match (view, wishes.others) {
+        let mut stages = match (view, wishes.others) {
             (false, _) => rays,
             (true, false) => of_view,
             (true, true) => of_view.and(rays),
         };
+        if wishes.any {
+            stages = stages.and(Stages::of(method.of_any_hits()));
+        }
         let mut prepared = Prepared::build(model, stages, settings)?;
         if view {
             prepared.take_view(picture, settings)?;
@@ -126,21 +131,33 @@ impl Viewed {
     /// The tracer of the picture's scan lines, and what was used for it.
     ///
     /// # Errors
-    /// As [`Prepared::view_tracer`].
+    /// As [`Viewed::tracers`].
     pub fn tracer(&mut self) -> Result<(Box<dyn Tracer + '_>, Used), LowerError> {
+        self.tracers().map(|(tracers, used)| (tracers.picture, used))
+    }
+
+    /// The tracers of the picture's rays, and what was used for them.
+    ///
+    /// # Errors
+    /// As [`Prepared::view_tracers`].
+    pub fn tracers(&mut self) -> Result<(Tracers<'_>, Used), LowerError> {
         let begin = Instant::now();
         let Viewed { prepared, settings, picture, wishes, stages, view, seconds } = self;
         let mut bytes: Bytes = prepared.bytes(*stages);
         bytes.add_all(&prepared.view_bytes(*stages));
         let (surfaces, patches) = (prepared.surfaces(), prepared.patches());
-        let tracer = if *view {
+        let others = Others { closest: wishes.others, any: wishes.any };
+        let tracers = if *view {
             let options = LineOptions { patches: stages.patches, coherence: wishes.coherence };
-            prepared.view_tracer(picture, settings, options, wishes.others)?
+            prepared.view_tracers(picture, settings, options, others)?
         } else {
-            prepared.tracer(settings)
+            prepared.tracers(settings, others)
         };
-        let lane = tracer.lane_bytes();
+        let mut lane = tracers.picture.lane_bytes();
+        if let Some(any) = &tracers.any {
+            lane.scratch += any.lane_bytes().scratch;
+        }
         let prepare_seconds = *seconds + begin.elapsed().as_secs_f64();
-        Ok((tracer, Used { surfaces, patches, bytes, prepare_seconds, lane }))
+        Ok((tracers, Used { surfaces, patches, bytes, prepare_seconds, lane }))
     }
 }

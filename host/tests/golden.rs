@@ -8,10 +8,11 @@
 use clap::ValueEnum;
 use image::RgbImage;
 use indicatif::ProgressBar;
-use patchray_host::cmd::render::draw;
+use patchray_host::cmd::render::{Drawing, draw};
 use patchray_host::scene::teapot;
 use patchray_host::scene::trace::{Method, Precision};
 use patchray_host::settings::Settings;
+use patchray_host::shade::shadows::Shadows;
 use patchray_host::viewed::{Viewed, Wishes};
 use std::path::Path;
 
@@ -37,8 +38,10 @@ fn every_method_draws_the_recorded_picture() {
             let wishes = Wishes::of(&scene.appearance);
             let mut viewed = Viewed::build(&scene.model, &settings, &view, wishes).expect("the teapot is valid");
             assert!(viewed.has_view());
-            let (tracer, _) = viewed.tracer().expect("it was just made ready");
-            let drawn = draw(tracer.as_ref(), &view, &scene.appearance, &ProgressBar::hidden());
+            let (tracers, _) = viewed.tracers().expect("it was just made ready");
+            let (appearance, shadows) = (&scene.appearance, &Shadows::NONE);
+            let drawing = Drawing { tracers: &tracers, view: &view, appearance, shadows, outcomes: false };
+            let drawn = draw(&drawing, &ProgressBar::hidden());
             let mut png = Vec::new();
             drawn.picture.write_png(&mut png).expect("memory does not fail");
             let drawn = image::load_from_memory(&png).expect("what was written can be read").to_rgb8();

@@ -2,11 +2,12 @@
 //! spectrum.
 
 use indicatif::ProgressBar;
-use patchray_host::cmd::render::{Drawn, draw};
+use patchray_host::cmd::render::{Drawing, Drawn, draw};
 use patchray_host::picture::encode;
 use patchray_host::scene::error::OnInvalid;
 use patchray_host::scene::file;
 use patchray_host::settings::Settings;
+use patchray_host::shade::shadows::Shadows;
 use patchray_host::viewed::{Viewed, Wishes};
 
 const SIZE: u32 = 48;
@@ -25,8 +26,10 @@ fn sphere(background: [f64; 3], material: &str, more: &str) -> (Drawn, Vec<[u8; 
     let view = scene.description.camera.view([SIZE, SIZE]);
     let wishes = Wishes::of(&scene.appearance);
     let mut viewed = Viewed::build(&scene.model, &Settings::default(), &view, wishes).expect("a sphere is valid");
-    let (tracer, _) = viewed.tracer().expect("it was just made ready");
-    let drawn = draw(tracer.as_ref(), &view, &scene.appearance, &ProgressBar::hidden());
+    let (tracers, _) = viewed.tracers().expect("it was just made ready");
+    let (appearance, shadows) = (&scene.appearance, &Shadows::NONE);
+    let drawing = Drawing { tracers: &tracers, view: &view, appearance, shadows, outcomes: false };
+    let drawn = draw(&drawing, &ProgressBar::hidden());
     assert!(drawn.tally.hits > u64::from(SIZE * SIZE) / 3, "{} hits", drawn.tally.hits);
     let mut png = Vec::new();
     drawn.picture.write_png(&mut png).expect("memory does not fail");

@@ -9,13 +9,13 @@ use clap::{Args, ValueEnum};
 use rayon::ThreadPool;
 use serde::Serialize;
 
-use super::render::{Drawn, draw};
+use super::render::{Drawing, Drawn, draw};
 use super::{Failure, StatsOutputs, check_outputs, pool, progress};
 use crate::judge::{Agreement, OracleStats, Truth, ask};
 use crate::oracle::Oracle;
 use crate::output::{Output, OutputError};
 use crate::picture::Picture;
-use crate::scanline::Tracer;
+use crate::prepared::Tracers;
 use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
 use crate::scene::file::Scene;
@@ -23,6 +23,7 @@ use crate::scene::model::Model;
 use crate::scene::teapot::common_scene;
 use crate::scene::trace::{Method, Precision};
 use crate::settings::{Flags, Settings, SizeFlag};
+use crate::shade::shadows::Shadows;
 use crate::stats::{SCHEMA, Stats, Used};
 use crate::viewed::{Viewed, Wishes};
 
@@ -123,11 +124,13 @@ fn compare(
     let wishes = Wishes { patches: true, ..Wishes::of(appearance) };
     let viewed = settings.iter().map(|settings| Viewed::build(model, settings, view, wishes));
     let mut viewed = viewed.collect::<Result<Vec<_>, _>>()?;
-    let tracers = viewed.iter_mut().map(Viewed::tracer).collect::<Result<Vec<_>, _>>()?;
+    let tracers = viewed.iter_mut().map(Viewed::tracers).collect::<Result<Vec<_>, _>>()?;
     let bar = progress((PASSES * settings.len()) as u64 * u64::from(view.size[1]), "drawing", quiet);
     let passes = (0..PASSES).map(|_| {
-        let draw =
-            |(tracer, _): &(Box<dyn Tracer + '_>, Used)| pool.install(|| draw(tracer.as_ref(), view, appearance, &bar));
+        let draw = |(tracers, _): &(Tracers, Used)| {
+            let drawing = Drawing { tracers, view, appearance, shadows: &Shadows::NONE, outcomes: true };
+            pool.install(|| draw(&drawing, &bar))
+        };
         tracers.iter().map(draw).collect::<Vec<Drawn>>()
     });
     let fastest = passes.reduce(|mut fastest, pass| {

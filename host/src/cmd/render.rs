@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::ProgressBar;
+use patchray::ray::RayError;
 use rayon::prelude::*;
 
 use super::load::{self, Loaded};
@@ -11,16 +12,18 @@ use super::{Failure, StatsOutputs, check_outputs, pool, progress, say, say_gave_
 use crate::batch::Lanes;
 use crate::output::Output;
 use crate::picture::{self, GAVE_UP, Picture, encode};
-use crate::scanline::{Outcome, Tally, Tracer, rays_of};
+use crate::prepared::Tracers;
+use crate::scanline::{Lane, Outcome, Tally, rays_of};
 
 pub use crate::scanline::row;
 use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
 use crate::scene::sampling::Sampling;
 use crate::settings::{Flags, SizeFlag};
-use crate::shade::painter::{Colour, Painter};
+use crate::shade::painter::{self, Colour, Painter};
+use crate::shade::shadows::Shadows;
 use crate::shade::spectrum::{Basis, Rgb, Sampled};
-use crate::stats::{RaysByKind, Stats};
+use crate::stats::{MethodsByKind, RaysByKind, Stats};
 use crate::viewed::{Viewed, Wishes};
 
 /// The command line of `render`.
@@ -62,17 +65,27 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let size = size.size.unwrap_or(description.image.size);
     let view = description.camera.view(size).sampled(samples.unwrap_or(description.image.samples));
     let mut viewed = Viewed::build(&loaded.model, settings, &view, Wishes::of(appearance))?;
-    let (tracer, used) = viewed.tracer()?;
+    let (tracers, used) = viewed.tracers()?;
+    let pool = pool(settings.threads)?;
+    let (shadows, maps) = pool.install(|| Shadows::prepare(&loaded.model, appearance, settings, view.eye))?;
 
     let bar = progress(u64::from(size[1]), "rendering", flags.quiet);
-    let drawn = pool(settings.threads)?.install(|| draw(tracer.as_ref(), &view, appearance, &bar));
+    let drawing = Drawing { tracers: &tracers, view: &view, appearance, shadows: &shadows, outcomes: false };
+    let drawn = pool.install(|| draw(&drawing, &bar));
     bar.finish_and_clear();
-    refuse_pixels(&drawn, &view, scene, &loaded)?;
+    refuse_pixels(&drawn, scene, &loaded)?;
 
     let mut stats = Stats::new(scene.display().to_string(), settings, used, &drawn.tally);
     stats.size = Some(size);
     stats.samples = Some(view.sampling);
-    stats.rays_by_kind = Some(drawn.rays);
+    stats.rays_by_kind = Some(RaysByKind { map: maps.iter().map(|map| map.rays).sum(), ..drawn.rays });
+    let method = settings.method;
+    stats.methods_by_kind = Some(MethodsByKind {
+        camera: method,
+        mirrored: (drawn.rays.mirrored > 0).then(|| method.of_any_rays()),
+        shadow: (drawn.rays.shadow > 0).then(|| method.of_any_hits()),
+    });
+    stats.shadow_maps = maps;
     stats.light_samples = Some(drawn.light_samples);
     drawn.picture.write_png(&mut png).map_err(|reason| png.failed(reason))?;
     png.finish()?;
@@ -89,8 +102,10 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
 pub struct Drawn {
     /// The picture.
     pub picture: Picture,
-    /// What became of each sample's ray, scan line by scan line from the top.
+    /// What became of each sample's ray, scan line by scan line from the top; nothing unless it was to be kept.
     pub outcomes: Vec<Outcome>,
+    /// The first pixel with a ray that the kernel refused, if there is one: its place from the left and the top, and why.
+    pub refused: Option<([u32; 2], RayError)>,
     /// The sums over the camera's rays.
     pub tally: Tally,
     /// All rays, by what they are for.
@@ -99,45 +114,82 @@ pub struct Drawn {
     pub light_samples: u32,
 }
 
+/// A row of pixels, and what drawing it came to.
+#[derive(Default)]
+struct Row {
+    pixels: Vec<picture::Rgb>,
+    outcomes: Vec<Outcome>,
+    tally: Tally,
+    rays: RaysByKind,
+    refused: Option<([u32; 2], RayError)>,
+}
+
+/// A picture to be drawn.
+#[derive(Clone, Copy)]
+pub struct Drawing<'d> {
+    /// What traces its rays.
+    pub tracers: &'d Tracers<'d>,
+    /// Its rays.
+    pub view: &'d View,
+    /// What they see looks so.
+    pub appearance: &'d Appearance,
+    /// The shadows of its lights.
+    pub shadows: &'d Shadows,
+    /// Whether to keep what became of each ray, which takes some 80 bytes each: of a large picture, more than all else.
+    pub outcomes: bool,
+}
+
 /// Draws a view, a row of pixels a job, on rayon's current threads. The result does not depend on their number. Light is
 /// counted as red, green and blue, or as nine samples of its spectrum where something is of metal.
-pub fn draw(tracer: &dyn Tracer, view: &View, appearance: &Appearance, bar: &ProgressBar) -> Drawn {
+pub fn draw(drawing: &Drawing, bar: &ProgressBar) -> Drawn {
+    let &Drawing { view, appearance, shadows, .. } = drawing;
     if appearance.has_metal() {
-        draw_in(Sampled::new(), tracer, view, appearance, bar)
+        draw_in(Painter::new(Sampled::new(), view.eye, appearance, shadows), drawing, bar)
     } else {
-        draw_in(Rgb, tracer, view, appearance, bar)
+        draw_in(Painter::new(Rgb, view.eye, appearance, shadows), drawing, bar)
     }
 }
 
 fn draw_in<const N: usize>(
-    basis: impl Basis<N>,
-    tracer: &dyn Tracer,
-    view: &View,
-    appearance: &Appearance,
+    painter: Painter<'_, impl Basis<N>, N>,
+    &Drawing { tracers, view, outcomes: keep, .. }: &Drawing,
     bar: &ProgressBar,
 ) -> Drawn {
-    let painter = Painter::new(basis, view.eye, appearance);
-    let lanes = Lanes::new(tracer);
+    let lanes = Lanes::new(tracers.picture.as_ref());
+    let of_any = tracers.any.as_deref().map(Lanes::new);
     let side = view.sampling.side();
-    let rows: Vec<(Vec<picture::Rgb>, Vec<Outcome>, Tally, u64)> = (0..view.size[1])
+    let row = |py: u32, lane: &mut dyn Lane, mut any: Option<&mut dyn Lane>| {
+        let mut row = Row::default();
+        let mut lines = Vec::new();
+        for line in side * py..side * (py + 1) {
+            let samples = view.scan_line(line);
+            let rays = rays_of(view, line, &samples);
+            let mut outcomes = Vec::with_capacity(rays.len());
+            lane.trace_line(&samples, &rays, &mut outcomes, &mut row.tally);
+            let shadow = any.as_mut().map(|lane| &mut **lane as &mut dyn Lane);
+            let painted = painter.paint(painter::Lanes { mirrored: lane, shadow }, &rays, &outcomes);
+            lines.push(painted.colours);
+            row.rays.mirrored += painted.mirrored;
+            row.rays.shadow += painted.shadow;
+            let refused = outcomes.iter().enumerate().find_map(|(sample, outcome)| match outcome {
+                Outcome::Refused(error) => Some(([sample as u32 / side, py], *error)),
+                _ => None,
+            });
+            row.refused = row.refused.or(refused);
+            if keep {
+                row.outcomes.extend(outcomes);
+            }
+        }
+        bar.inc(1);
+        Row { pixels: pixels(&lines), ..row }
+    };
+    let rows: Vec<Row> = (0..view.size[1])
         .into_par_iter()
         .map(|py| {
-            let (mut all, mut tally) = (Vec::new(), Tally::default());
-            let (mut lines, mut mirrored) = (Vec::new(), 0);
-            lanes.with(|lane| {
-                for line in side * py..side * (py + 1) {
-                    let samples = view.scan_line(line);
-                    let rays = rays_of(view, line, &samples);
-                    let mut outcomes = Vec::with_capacity(rays.len());
-                    lane.trace_line(&samples, &rays, &mut outcomes, &mut tally);
-                    let painted = painter.paint(lane, &rays, &outcomes);
-                    lines.push(painted.colours);
-                    mirrored += painted.mirrored;
-                    all.extend(outcomes);
-                }
-            });
-            bar.inc(1);
-            (pixels(&lines), all, tally, mirrored)
+            lanes.with(|lane| match &of_any {
+                Some(of_any) => of_any.with(|any| row(py, lane, Some(any))),
+                None => row(py, lane, None),
+            })
         })
         .collect();
     let mut drawn = Drawn {
@@ -145,13 +197,16 @@ fn draw_in<const N: usize>(
         outcomes: Vec::new(),
         tally: Tally::default(),
         rays: RaysByKind::default(),
+        refused: None,
         light_samples: N as u32,
     };
-    for (pixels, outcomes, tally, mirrored) in rows {
+    for Row { pixels, outcomes, tally, rays, refused } in rows {
         drawn.picture.push_row(&pixels);
         drawn.outcomes.extend(outcomes);
         drawn.tally.add(&tally);
-        drawn.rays.mirrored += mirrored;
+        drawn.rays.mirrored += rays.mirrored;
+        drawn.rays.shadow += rays.shadow;
+        drawn.refused = drawn.refused.or(refused);
     }
     drawn.rays.camera = drawn.tally.rays;
     drawn
@@ -174,24 +229,14 @@ fn pixels(lines: &[Vec<Colour>]) -> Vec<picture::Rgb> {
 }
 
 /// Refuses a view with a pixel whose ray the kernel refuses.
-fn refuse_pixels(drawn: &Drawn, view: &View, scene: &Path, loaded: &Loaded) -> Result<(), Failure> {
-    let refused = drawn.outcomes.iter().enumerate().find_map(|(sample, outcome)| match outcome {
-        Outcome::Refused(error) => Some((sample, error)),
-        _ => None,
-    });
-    let Some((sample, error)) = refused else {
+fn refuse_pixels(drawn: &Drawn, scene: &Path, loaded: &Loaded) -> Result<(), Failure> {
+    let Some(([px, py], error)) = drawn.refused else {
         return Ok(());
     };
-    let side = view.sampling.side() as usize;
-    let width = side * drawn.picture.size()[0] as usize;
     let precision = loaded.settings.precision;
     Err(Failure::Refused {
         file: scene.display().to_string(),
-        reason: format!(
-            "the camera's ray of pixel ({}, {}) cannot be traced in {precision:?}: {error}",
-            sample % width / side,
-            sample / width / side
-        ),
+        reason: format!("the camera's ray of pixel ({px}, {py}) cannot be traced in {precision:?}: {error}"),
         help: "bring the camera's vectors to the size of the surfaces, or use --precision f64".to_owned(),
     })
 }

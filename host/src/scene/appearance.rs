@@ -1,9 +1,10 @@
-//! What a picture looks like: its size and samples, lights, materials, the background.
+//! What a picture looks like: its size and samples, materials, the background.
 use serde::Deserialize;
 use toml::Spanned;
 
 use super::check::Check;
 use super::error::InputError;
+use super::light::{Light, Shadow};
 use super::polygon::Polygon;
 use super::sampling::Sampling;
 
@@ -22,21 +23,6 @@ pub struct Image {
 impl Default for Image {
     fn default() -> Self {
         Self { size: [512, 512], samples: Sampling::default() }
-    }
-}
-
-/// The table `[light]`, or one of `[[lights]]`: a point that shines.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Light {
-    /// Where it is, in the units of the surfaces. By default at the camera's eye: `None`.
-    pub position: Option<[f64; 3]>,
-    /// Its colour: red, green and blue, linear, 0 to 1. By default white.
-    pub colour: [f64; 3],
-}
-
-impl Default for Light {
-    fn default() -> Self {
-        Self { position: None, colour: [1.0; 3] }
     }
 }
 
@@ -116,6 +102,11 @@ impl Appearance {
         let mut used = self.surfaces.iter().chain(polygons).filter_map(|&index| self.materials.get(index));
         used.any(|material| material.metal.is_some())
     }
+
+    /// Whether a light's shadows are found by rays.
+    pub fn has_shadow_rays(&self) -> bool {
+        self.lights.iter().any(|light| light.shadow == Shadow::Rays)
+    }
 }
 
 /// The background where a scene file gives none: white.
@@ -145,26 +136,6 @@ impl ImageTable {
                 "write width and height in pixels, such as `size = [512, 512]`",
             )),
         }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct LightTable {
-    position: Option<Spanned<Vec<f64>>>,
-    colour: Option<Spanned<Vec<f64>>>,
-}
-
-impl LightTable {
-    pub(super) fn check(&self, check: &Check) -> Result<Light, InputError> {
-        let mut light = Light::default();
-        if let Some(position) = &self.position {
-            light.position = Some(check.triple("`position` of the light", position)?);
-        }
-        if let Some(colour) = &self.colour {
-            light.colour = check.colour("`colour` of the light", colour)?;
-        }
-        Ok(light)
     }
 }
 

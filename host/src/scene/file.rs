@@ -22,12 +22,13 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::appearance::{Appearance, BACKGROUND, Image, ImageTable, Light, LightTable, Material, MaterialTable};
+use super::appearance::{Appearance, BACKGROUND, Image, ImageTable, Material, MaterialTable};
 use super::assemble::{Assembled, assemble};
 use super::camera::{Camera, CameraTable};
 use super::check::Check;
 use super::contents::{self, Contents, EntryTable, GroupTable, Names};
 use super::error::{InputError, OnInvalid, Skipped};
+use super::light::{Light, LightTable};
 use super::model::Model;
 use super::nearest::did_you_mean;
 use super::patches::{self, PatchFile};

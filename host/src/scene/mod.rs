@@ -9,6 +9,7 @@ pub mod error;
 pub mod file;
 pub mod generator;
 mod json;
+pub mod light;
 pub mod model;
 pub mod nearest;
 pub mod nurbs_python;

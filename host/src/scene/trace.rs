@@ -53,6 +53,15 @@ impl Method {
         }
     }
 
+    /// The method that tells in its place whether anything lies on a ray: the original, since rays that ask that have
+    /// nothing in common with the ray before.
+    pub fn of_any_hits(self) -> Self {
+        match self {
+            Method::Newton | Method::NewtonCoherent | Method::NewtonPredicted => Method::Newton,
+            Method::Clipping | Method::ClippingCoherent | Method::ClippingPredicted => Method::Clipping,
+        }
+    }
+
     /// Its name, as files and the command line have it.
     pub fn name(self) -> &'static str {
         match self {

@@ -8,17 +8,23 @@
 
 use std::array;
 
-use crate::scene::appearance::Light;
+use crate::scene::light::Light;
 use finish::Finish;
+use shadows::Facing;
 use spectrum::Basis;
+use vector::{dot, subtract, unit};
 
 pub mod display;
+mod face;
 pub mod finish;
 pub mod fresnel;
+pub mod map;
 pub mod metal;
 pub mod observer;
 pub mod painter;
+pub mod shadows;
 pub mod spectrum;
+mod vector;
 
 /// The lights of a scene, ready to shade points.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +33,21 @@ pub struct Shader<const N: usize> {
     lights: Vec<([f64; 3], [f64; N])>,
 }
 
+/// A light at a point: what it does there by angles alone.
+#[derive(Clone, Copy, Debug)]
+struct Lamp {
+    /// The cosine between the normal and the light, or 0 if it is behind.
+    facing: f64,
+    /// The strength of the highlight.
+    spot: f64,
+    /// The cosine between the light and the half-way vector.
+    half: f64,
+}
+
+/// The part of a light's colour that is not missed: where less of it comes from a point than this, it is not asked whether
+/// the light reaches the point. By thirty times that, a dark pixel changes by one of 255 steps.
+const UNSEEN: f64 = 1e-5;
+
 impl<const N: usize> Shader<N> {
     /// The shader of a scene's lights; a light without a place is at the eye.
     pub fn new(eye: [f64; 3], lights: &[Light], basis: &impl Basis<N>) -> Self {
@@ -34,47 +55,80 @@ impl<const N: usize> Shader<N> {
         Shader { lights: lights.iter().map(placed).collect() }
     }
 
+    /// The number of lights.
+    pub fn lights(&self) -> usize {
+        self.lights.len()
+    }
+
     /// The light of a point with the unit normal `normal`, either side of it, as seen from `eye`; parts may exceed 1. A point
-    /// without a normal is taken to face the eye.
-    pub fn colour(&self, eye: [f64; 3], point: [f64; 3], normal: Option<[f64; 3]>, finish: &Finish<N>) -> [f64; N] {
-        let Finish { colour, ambient, diffuse, highlight, shininess, metal, .. } = *finish;
-        let to_eye = unit(subtract(eye, point));
-        let mut normal = normal.unwrap_or(to_eye);
-        if dot(normal, to_eye) < 0.0 {
-            normal = normal.map(|c| -c);
-        }
+    /// without a normal is taken to face the eye. Of each light so much arrives as `shares` says, and all where it says
+    /// nothing; `None` if that is not known of one.
+    pub fn colour(
+        &self,
+        eye: [f64; 3],
+        point: [f64; 3],
+        normal: Option<[f64; 3]>,
+        finish: &Finish<N>,
+        shares: &[Option<f64>],
+    ) -> Option<[f64; N]> {
+        let Finish { colour, ambient, diffuse, metal, .. } = *finish;
+        let (to_eye, normal) = turned(eye, point, normal);
         let mut sum = colour.map(|part| part * ambient);
-        for &(light, light_colour) in &self.lights {
-            let to_light = unit(subtract(light, point));
-            // A light behind the surface, as seen from the eye, lights its other side.
-            let facing = dot(normal, to_light).max(0.0);
-            let half_way = unit([0, 1, 2].map(|k| to_eye[k] + to_light[k]));
-            let spot = if facing > 0.0 { highlight * dot(normal, half_way).max(0.0).powf(shininess) } else { 0.0 };
+        for (number, &(light, light_colour)) in self.lights.iter().enumerate() {
+            let share = shares.get(number).copied().unwrap_or(Some(1.0))?;
+            if share == 0.0 {
+                continue;
+            }
+            let Lamp { facing, spot, half } = lamp(light, point, to_eye, normal, finish);
             sum = match metal {
-                None => array::from_fn(|k| sum[k] + light_colour[k] * (colour[k] * diffuse * facing + spot)),
+                None => array::from_fn(|k| sum[k] + share * light_colour[k] * (colour[k] * diffuse * facing + spot)),
                 Some(metal) if spot > 0.0 => {
-                    let cosine = dot(half_way, to_light);
-                    array::from_fn(|k| sum[k] + light_colour[k] * spot * metal[k].reflectance(cosine))
+                    array::from_fn(|k| sum[k] + share * light_colour[k] * spot * metal[k].reflectance(half))
                 }
                 Some(_) => sum,
             };
         }
-        sum
+        Some(sum)
+    }
+
+    /// The point as the light with this number sees it, if anything is seen of that light there.
+    pub fn facing(
+        &self,
+        number: usize,
+        eye: [f64; 3],
+        point: [f64; 3],
+        normal: Option<[f64; 3]>,
+        finish: &Finish<N>,
+    ) -> Option<Facing> {
+        let &(light, _) = self.lights.get(number)?;
+        let (to_eye, normal) = turned(eye, point, normal);
+        let Lamp { facing, spot, .. } = lamp(light, point, to_eye, normal, finish);
+        let scattered = if finish.metal.is_some() { 0.0 } else { finish.diffuse * facing };
+        (scattered + spot > UNSEEN).then_some(Facing { point, normal, light, cosine: facing })
     }
 }
 
-fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[k] - b[k])
+/// The direction to the eye, and the normal on its side.
+fn turned(eye: [f64; 3], point: [f64; 3], normal: Option<[f64; 3]>) -> ([f64; 3], [f64; 3]) {
+    let to_eye = unit(subtract(eye, point));
+    let normal = normal.unwrap_or(to_eye);
+    (to_eye, if dot(normal, to_eye) < 0.0 { normal.map(|c| -c) } else { normal })
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The vector over its length; zero for a zero vector.
-fn unit(vector: [f64; 3]) -> [f64; 3] {
-    let length = vector[0].hypot(vector[1]).hypot(vector[2]);
-    if length > 0.0 { vector.map(|c| c / length) } else { [0.0; 3] }
+fn lamp<const N: usize>(
+    light: [f64; 3],
+    point: [f64; 3],
+    to_eye: [f64; 3],
+    normal: [f64; 3],
+    finish: &Finish<N>,
+) -> Lamp {
+    let to_light = unit(subtract(light, point));
+    // A light behind the surface, as seen from the eye, lights its other side.
+    let facing = dot(normal, to_light).max(0.0);
+    let half_way = unit([0, 1, 2].map(|k| to_eye[k] + to_light[k]));
+    let spot =
+        if facing > 0.0 { finish.highlight * dot(normal, half_way).max(0.0).powf(finish.shininess) } else { 0.0 };
+    Lamp { facing, spot, half: dot(half_way, to_light) }
 }
 
 #[cfg(test)]
@@ -89,7 +143,7 @@ mod tests {
     fn colour(lights: &[[f64; 3]], normal: Option<[f64; 3]>) -> [f64; 3] {
         let base = Material { colour: [1.0, 0.5, 0.0], ambient: 0.1, diffuse: 0.6, ..Material::default() };
         let material = Material { highlight: 0.2, shininess: 8.0, ..base };
-        let lights: Vec<_> = lights.iter().map(|&at| Light { position: Some(at), colour: [1.0; 3] }).collect();
+        let lights: Vec<_> = lights.iter().map(|&at| Light { position: Some(at), ..Light::default() }).collect();
         Shader::new(EYE, &lights, &Rgb).colour(EYE, [0.0; 3], normal, &Finish::new(&material, &Rgb))
     }
 
@@ -122,7 +176,7 @@ mod tests {
     #[test]
     fn white_under_white_light_stays_neutral() {
         let material = Material { colour: [1.0; 3], ambient: 0.1, diffuse: 0.6, highlight: 0.0, ..Material::default() };
-        let light = Light { position: Some([3.0, 0.0, 4.0]), colour: [1.0; 3] };
+        let light = Light { position: Some([3.0, 0.0, 4.0]), ..Light::default() };
         let basis = Sampled::new();
         let shader = Shader::new(EYE, &[light], &basis);
         let found = shader.colour(EYE, [0.0; 3], Some([0.0, 0.0, 1.0]), &Finish::new(&material, &basis));
@@ -137,7 +191,7 @@ mod tests {
         let basis = Sampled::new();
         let finish = Finish::new(&material, &basis);
         // Toward the eye and toward the light it is 53.13 degrees, of which the half has the cosine √0.8.
-        let light = Light { position: Some([4.0, 0.0, 3.0]), colour: [1.0; 3] };
+        let light = Light { position: Some([4.0, 0.0, 3.0]), ..Light::default() };
         let found = Shader::new(EYE, &[light], &basis).colour(EYE, [0.0; 3], Some([0.0, 0.0, 1.0]), &finish);
         let gold = finish.metal.expect("gold is a metal");
         for (found, index) in found.into_iter().zip(gold) {

@@ -6,6 +6,7 @@
 
 use super::Shader;
 use super::finish::{Finish, Mirror};
+use super::shadows::{Shadows, Visibility};
 use super::spectrum::Basis;
 use crate::scanline::{Lane, Outcome, Tally};
 use crate::scene::appearance::{Appearance, Material};
@@ -23,6 +24,7 @@ pub type Colour = Option<[f64; 3]>;
 pub struct Painter<'s, B, const N: usize> {
     basis: B,
     appearance: &'s Appearance,
+    shadows: &'s Shadows,
     shader: Shader<N>,
     /// The materials.
     finishes: Vec<Finish<N>>,
@@ -38,6 +40,16 @@ pub struct Painted {
     pub colours: Vec<Colour>,
     /// The number of mirrored rays that were traced.
     pub mirrored: u64,
+    /// The number of rays to lights that were traced.
+    pub shadow: u64,
+}
+
+/// What traces the rays that painting asks for.
+pub struct Lanes<'l> {
+    /// Those that mirrors send on.
+    pub mirrored: &'l mut dyn Lane,
+    /// Those to lights, of any hits; may be left out where no light's shadows are found by rays.
+    pub shadow: Option<&'l mut dyn Lane>,
 }
 
 /// A point that a ray met.
@@ -57,12 +69,21 @@ enum Seen {
     GaveUp,
 }
 
+/// A ray and what it sees.
+struct Sight<const N: usize> {
+    ray: RayLine,
+    seen: Seen,
+    /// What a mirror there makes of the picture that another ray brings, and the place of that ray's sight.
+    next: Option<(Mirror<N>, usize)>,
+}
+
 impl<'s, B: Basis<N>, const N: usize> Painter<'s, B, N> {
-    /// The painter of rays from `eye`, whose light `basis` counts.
-    pub fn new(basis: B, eye: [f64; 3], appearance: &'s Appearance) -> Self {
+    /// The painter of rays from `eye`, whose light `basis` counts; `shadows` are those of the same lights.
+    pub fn new(basis: B, eye: [f64; 3], appearance: &'s Appearance, shadows: &'s Shadows) -> Self {
         Painter {
             basis,
             appearance,
+            shadows,
             shader: Shader::new(eye, &appearance.lights, &basis),
             finishes: appearance.materials.iter().map(|material| Finish::new(material, &basis)).collect(),
             fallback: Finish::new(&Material::default(), &basis),
@@ -70,35 +91,62 @@ impl<'s, B: Basis<N>, const N: usize> Painter<'s, B, N> {
         }
     }
 
-    /// The colours of rays, one each, `outcomes` being what became of them on surfaces. Mirrored rays are traced by `lane`.
-    pub fn paint(&self, lane: &mut dyn Lane, rays: &[RayLine], outcomes: &[Outcome]) -> Painted {
-        let mut mirrors = Vec::new();
+    /// The colours of rays, one each, `outcomes` being what became of them on surfaces.
+    pub fn paint(&self, lanes: Lanes, rays: &[RayLine], outcomes: &[Outcome]) -> Painted {
+        let mut sights: Vec<_> = rays.iter().zip(outcomes).map(|(ray, outcome)| self.sight(ray, outcome)).collect();
+        let count = sights.len();
         let mut mirrored = Vec::new();
-        let mut lights = Vec::with_capacity(rays.len());
-        for (ray, outcome) in rays.iter().zip(outcomes) {
-            let seen = self.seen(ray, outcome);
-            let next = match &seen {
-                Seen::Point(met) => self.mirror(ray, met).zip(reflected(ray, met)),
-                Seen::Nothing | Seen::GaveUp => None,
-            };
-            let Some((mirror, next)) = next else {
-                lights.push(self.last(ray, &seen));
-                continue;
-            };
-            mirrors.push((lights.len(), mirror));
-            mirrored.push(next);
-            lights.push(self.own(ray, &seen));
+        for Sight { ray, seen, next } in &mut sights {
+            if let Seen::Point(met) = seen
+                && let Some((mirror, ray)) = self.mirror(ray, met).zip(reflected(ray, met))
+            {
+                *next = Some((mirror, count + mirrored.len()));
+                mirrored.push(ray);
+            }
         }
         if !mirrored.is_empty() {
             let mut outcomes = Vec::with_capacity(mirrored.len());
-            lane.trace(&mirrored, false, &mut outcomes, &mut Tally::default());
-            for ((ray, outcome), (index, mirror)) in mirrored.iter().zip(&outcomes).zip(mirrors) {
-                let picture = self.last(ray, &self.seen(ray, outcome));
-                lights[index] = lights[index].zip(picture).map(|(own, picture)| mirror.with(own, picture));
+            lanes.mirrored.trace(&mirrored, false, &mut outcomes, &mut Tally::default());
+            sights.extend(mirrored.iter().zip(&outcomes).map(|(ray, outcome)| self.sight(ray, outcome)));
+        }
+        let (visibility, shadow) = self.lit(lanes.shadow, &sights);
+        let own = |k: usize| self.own(sights.get(k)?, visibility.of_point(k));
+        // After the last ray that is followed, a metal mirrors the background.
+        let last = |k: usize| {
+            let Sight { ray, seen, .. } = sights.get(k)?;
+            let metal = match seen {
+                Seen::Point(met) if self.finish(met).metal.is_some() => self.mirror(ray, met),
+                _ => None,
+            };
+            own(k).map(|own| metal.map_or(own, |mirror| mirror.with(own, self.background)))
+        };
+        let light = |k: usize| match sights.get(k)?.next {
+            None => last(k),
+            Some((mirror, next)) => Some(mirror.with(own(k)?, last(next)?)),
+        };
+        let colours = (0..count).map(|k| light(k).map(|light| self.basis.display(light))).collect();
+        Painted { colours, mirrored: mirrored.len() as u64, shadow }
+    }
+
+    /// Which lights reach what rays see, and how many rays that took.
+    fn lit(&self, lane: Option<&mut dyn Lane>, sights: &[Sight<N>]) -> (Visibility<'s>, u64) {
+        let lights = self.shader.lights();
+        let mut visibility = Visibility::new(self.shadows, &self.appearance.polygons, sights.len(), lights);
+        for (index, Sight { ray, seen, .. }) in sights.iter().enumerate().filter(|_| self.shadows.any()) {
+            let Seen::Point(met) = seen else { continue };
+            for light in (0..lights).filter(|&light| self.shadows.casts(light)) {
+                let facing = self.shader.facing(light, ray.origin, met.point, met.normal, self.finish(met));
+                if let Some(facing) = facing {
+                    visibility.ask([index, light], &facing, ray.origin);
+                }
             }
         }
-        let colours = lights.into_iter().map(|light| light.map(|light| self.basis.display(light))).collect();
-        Painted { colours, mirrored: mirrored.len() as u64 }
+        let rays = visibility.trace(lane);
+        (visibility, rays)
+    }
+
+    fn sight(&self, ray: &RayLine, outcome: &Outcome) -> Sight<N> {
+        Sight { ray: *ray, seen: self.seen(ray, outcome), next: None }
     }
 
     /// What a ray sees: the nearer of what it met on surfaces and on polygons.
@@ -129,30 +177,24 @@ impl<'s, B: Basis<N>, const N: usize> Painter<'s, B, N> {
 
     /// What the point mirrors of the ray; `None` if it is no mirror.
     fn mirror(&self, ray: &RayLine, met: &Met) -> Option<Mirror<N>> {
+        let finish = self.finish(met);
+        if !(finish.reflect > 0.0) {
+            return None;
+        }
         // What has no normal is taken to face the ray.
-        self.finish(met).mirror(met.normal.map_or(1.0, |normal| {
+        finish.mirror(met.normal.map_or(1.0, |normal| {
             let [along, square] = [normal, ray.direction].map(|v| (0..3).map(|k| v[k] * ray.direction[k]).sum::<f64>());
             along.abs() / square.sqrt()
         }))
     }
 
-    /// The light that a ray brings without what is mirrored.
-    fn own(&self, ray: &RayLine, seen: &Seen) -> Option<[f64; N]> {
+    /// The light that a ray brings without what is mirrored, so much of each light arriving there as `shares` says.
+    fn own(&self, Sight { ray, seen, .. }: &Sight<N>, shares: &[Option<f64>]) -> Option<[f64; N]> {
         match seen {
             Seen::Nothing => Some(self.background),
             Seen::GaveUp => None,
-            Seen::Point(met) => Some(self.shader.colour(ray.origin, met.point, met.normal, self.finish(met))),
+            Seen::Point(met) => self.shader.colour(ray.origin, met.point, met.normal, self.finish(met), shares),
         }
-    }
-
-    /// The light that a ray brings after which no other is followed.
-    fn last(&self, ray: &RayLine, seen: &Seen) -> Option<[f64; N]> {
-        let own = self.own(ray, seen)?;
-        let metal = match seen {
-            Seen::Point(met) if self.finish(met).metal.is_some() => self.mirror(ray, met),
-            _ => None,
-        };
-        Some(metal.map_or(own, |mirror| mirror.with(own, self.background)))
     }
 }
 
@@ -170,8 +212,11 @@ mod tests {
     use super::super::spectrum::{Rgb, Sampled};
     use super::*;
     use crate::scanline::Found;
-    use crate::scene::appearance::{Light, Metal};
+    use crate::scene::appearance::Metal;
+    use crate::scene::light::{Light, Shadow};
+    use crate::scene::model::Model;
     use crate::scene::polygon::Polygon;
+    use crate::settings::Settings;
 
     /// A lane that answers every ray alike.
     struct Answers(Outcome);
@@ -180,6 +225,10 @@ mod tests {
         fn trace(&mut self, rays: &[RayLine], _: bool, outcomes: &mut Vec<Outcome>, _: &mut Tally) {
             outcomes.extend(rays.iter().map(|_| self.0));
         }
+    }
+
+    fn lanes(mirrored: &mut Answers) -> Lanes<'_> {
+        Lanes { mirrored, shadow: None }
     }
 
     const DOWN: RayLine = RayLine {
@@ -207,7 +256,8 @@ mod tests {
     }
 
     fn painted(appearance: &Appearance, met: Outcome, mirrored: Outcome) -> Colour {
-        Painter::new(Rgb, DOWN.origin, appearance).paint(&mut Answers(mirrored), &[DOWN], &[met]).colours[0]
+        let mut lane = Answers(mirrored);
+        Painter::new(Rgb, DOWN.origin, appearance, &Shadows::NONE).paint(lanes(&mut lane), &[DOWN], &[met]).colours[0]
     }
 
     fn surface(t: f64) -> Outcome {
@@ -237,6 +287,27 @@ mod tests {
         assert_eq!(painted(&floor(0.5), Outcome::Miss, gave_up), None);
     }
 
+    /// A floor that scatters all of one light and shines itself: in the shadow its own light is left.
+    #[test]
+    fn a_shadow_takes_the_light_and_not_what_shines_by_itself() {
+        let mut scene = floor(0.0);
+        scene.materials[1].diffuse = 0.5;
+        scene.lights = vec![Light { position: Some([0.0, 0.0, 3.0]), shadow: Shadow::Rays, ..Light::default() }];
+        let shadows = Shadows::prepare(&Model::default(), &scene, &Settings::default(), DOWN.origin);
+        let (shadows, _) = shadows.expect("there is no map");
+        let painter = Painter::new(Rgb, DOWN.origin, &scene, &shadows);
+        let gave_up = Outcome::GaveUp { limit: "nodes", best: None };
+        let mut nothing = Answers(Outcome::Miss);
+        for (answer, colour) in
+            [(Outcome::Miss, Some([1.5, 0.0, 0.0])), (surface(0.5), Some([1.0, 0.0, 0.0])), (gave_up, None)]
+        {
+            let mut to_light = Answers(answer);
+            let lanes = Lanes { mirrored: &mut nothing, shadow: Some(&mut to_light) };
+            let painted = painter.paint(lanes, &[DOWN], &[Outcome::Miss]);
+            assert_eq!((painted.colours, painted.shadow), (vec![colour], 1));
+        }
+    }
+
     #[test]
     fn mirrored_rays_leave_as_they_came() {
         let ray = RayLine { direction: [3.0, 0.0, -1.0], ..DOWN };
@@ -251,10 +322,9 @@ mod tests {
     fn mirrored_rays_are_counted() {
         let count = |reflect| {
             let scene = floor(reflect);
-            let painter = Painter::new(Rgb, DOWN.origin, &scene);
-            painter
-                .paint(&mut Answers(Outcome::Miss), &[DOWN; 3], &[Outcome::Miss, surface(1.0), Outcome::Miss])
-                .mirrored
+            let painter = Painter::new(Rgb, DOWN.origin, &scene, &Shadows::NONE);
+            let outcomes = [Outcome::Miss, surface(1.0), Outcome::Miss];
+            painter.paint(lanes(&mut Answers(Outcome::Miss)), &[DOWN; 3], &outcomes).mirrored
         };
         assert_eq!((count(0.0), count(0.5)), (0, 2));
     }
@@ -268,8 +338,8 @@ mod tests {
             *material = Material { metal: Some(metal), reflect, ..*material };
         }
         let ray = RayLine { origin: [-0.4, 0.0, 0.3], direction: [4.0, 0.0, -3.0], ..DOWN };
-        let painter = Painter::new(Sampled::new(), ray.origin, &scene);
-        painter.paint(&mut Answers(mirrored), &[ray], &[Outcome::Miss]).colours[0].expect("no ray is given up")
+        let painter = Painter::new(Sampled::new(), ray.origin, &scene, &Shadows::NONE);
+        painter.paint(lanes(&mut Answers(mirrored)), &[ray], &[Outcome::Miss]).colours[0].expect("no ray is given up")
     }
 
     #[test]

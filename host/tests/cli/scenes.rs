@@ -76,3 +76,65 @@ fn the_surfaces_of_a_scene_answer_rays_under_their_number_in_it() {
     assert!((16..32).contains(&patch(&lines[0])) && patch(&lines[1]) < 16, "{answers}");
     assert_eq!(lines[2][9], "miss");
 }
+
+/// The toruses under two lights, whose shadows are found in two ways.
+fn shadowed() -> String {
+    let lights = "[[lights]]\nposition = [3, -4, 6]\nshadow = 'map'\nmap_size = 90\n\
+        [[lights]]\nposition = [-5, -2, 6]\ncolour = [0.4, 0.4, 0.5]\nshadow = 'rays'\n";
+    format!("{TORUSES}{lights}")
+}
+
+#[test]
+fn shadows_give_the_same_bytes_with_any_threads() {
+    let folder = Folder::new();
+    folder.put("toruses.toml", shadowed());
+    for method in METHODS.into_iter().chain(PREDICTED) {
+        for threads in [1, 2, 3] {
+            let flags = format!("--method {method} --threads {threads}");
+            folder.done(&format!("render toruses.toml -o {threads}.png --stats {threads}.json {flags}"));
+        }
+        let picture = |threads| fs::read(folder.path(&format!("{threads}.png"))).expect("there");
+        assert!(picture(1) == picture(2) && picture(1) == picture(3), "{method}");
+        let [one, three] = [folder.json("1.json"), folder.json("3.json")];
+        assert_eq!(one["rays_by_kind"], three["rays_by_kind"], "{method}");
+    }
+}
+
+/// What shadows take is told, and nothing is prepared for those that there are not.
+#[test]
+fn stats_say_what_shadows_took() {
+    let folder = Folder::new();
+    let rays = shadowed().replace("shadow = 'map'\nmap_size = 90\n", "shadow = 'rays'\n");
+    let map = shadowed().replace("shadow = 'rays'", "shadow = 'map'\nmap_size = 40");
+    let none = shadowed().replace("shadow = 'map'\nmap_size = 90\n", "").replace("shadow = 'rays'\n", "");
+    let stats = [("both", shadowed()), ("rays", rays), ("map", map), ("none", none)].map(|(name, text)| {
+        folder.put(&format!("{name}.toml"), text);
+        folder.done(&format!("render {name}.toml -o {name}.png --stats {name}.json --method newton-predicted"));
+        folder.json(&format!("{name}.json"))
+    });
+    let pictures = ["both", "rays", "map", "none"].map(|name| fs::read(folder.path(&format!("{name}.png"))));
+    let [both, rays, map, none] = pictures.map(|picture| picture.expect("there"));
+    assert!(both != rays && both != map && both != none && rays != map && rays != none && map != none);
+    for (stats, sizes) in stats.iter().zip([&[90][..], &[], &[90, 40], &[]]) {
+        let maps = stats["shadow_maps"].as_array().cloned().unwrap_or_default();
+        assert_eq!(maps.iter().map(|map| map["size"].as_u64().expect("a size")).collect::<Vec<_>>(), sizes);
+        for map in &maps {
+            let texels = map["size"].as_u64().expect("a size").pow(2);
+            assert_eq!((&map["rays"], &map["faces"], &map["gave_up"]), (&texels.into(), &1.into(), &0.into()));
+            assert_eq!(map["bytes"], 12 * texels);
+            assert_eq!(map["method"], "newton-predicted");
+        }
+        let of_maps: u64 = maps.iter().map(|map| map["rays"].as_u64().expect("a number")).sum();
+        assert_eq!(stats["rays_by_kind"]["map"], of_maps);
+    }
+    let shadow = stats.each_ref().map(|stats| stats["rays_by_kind"]["shadow"].as_u64().expect("a number"));
+    assert!(shadow[0] > 0 && shadow[1] > shadow[0] && shadow[2] == 0 && shadow[3] == 0, "{shadow:?}");
+    // Rays to lights ask the tree of the original method, and the camera's and the mirrors' none.
+    let trees = stats.each_ref().map(|stats| stats["arena_bytes_by_kind"]["tree_nodes"].as_u64());
+    assert!(trees[0].is_some() && trees[0] == trees[1] && trees[2].is_none() && trees[3].is_none(), "{trees:?}");
+    let methods = stats.each_ref().map(|stats| stats["methods_by_kind"]["shadow"].as_str().map(str::to_owned));
+    assert_eq!(methods, [Some("newton".to_owned()), Some("newton".to_owned()), None, None]);
+    // What the camera's rays took is the same with shadows and without.
+    let points = stats.each_ref().map(|stats| [&stats["intersection_points"], &stats["hit_rays"], &stats["rays"]]);
+    assert!(points.iter().all(|of| *of == points[3]));
+}

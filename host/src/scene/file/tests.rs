@@ -60,6 +60,8 @@ fn unknown_names_with_the_nearest() {
     refused_after("[trace]\nweather = 1\n", "s.toml:6:1", "there is no `weather` here");
     refused_after("[trace]\nmethod = \"newton_coherent\"\n", "s.toml:6:10", "(did you mean `newton-coherent`?)");
     refused_after("[trace]\nprecision = \"f16\"\n", "s.toml:6:13", "there is no `f16` here");
+    refused_after("[light]\nshadow = \"ray\"\n", "s.toml:6:10", "there is no `ray` here (did you mean `rays`?)");
+    refused_after("[light]\nshadows = \"map\"\n", "s.toml:6:1", "there is no `shadows` here (did you mean `shadow`?)");
     let report = rendered(&parse("s.toml", "[image]\nsice = 1\n").expect_err("refused"));
     assert!(report.contains("help: write one of size"), "{report}");
 }
@@ -112,6 +114,17 @@ fn values_out_of_range() {
     refused_after("[image]\nsize = [5, 40000]\n", "s.toml:6:8", "not the size of an image");
     refused_after("[light]\nposition = [1, 2]\n", "s.toml:6:12", "`position` of the light has 2 numbers");
     refused_after("[light]\ncolour = [1, 2, -3]\n", "s.toml:6:10", "`colour` of the light is not a colour");
+    let map = "[light]\nshadow = \"map\"\n";
+    for (line, place, message) in [
+        ("map_size = 0", "s.toml:7:12", "`map_size` is 0"),
+        ("map_size = 8193", "s.toml:7:12", "`map_size` is 8193"),
+        ("map_size = 0.5", "s.toml:7:12", "invalid type: floating point `0.5`, expected u32"),
+        ("map_bias = -1", "s.toml:7:12", "`map_bias` is -1"),
+        ("map_bias = inf", "s.toml:7:12", "`map_bias` is inf"),
+        ("map_sice = 8", "s.toml:7:1", "there is no `map_sice` here (did you mean `map_size`?)"),
+    ] {
+        refused_after(&format!("{map}{line}\n"), place, message);
+    }
     refused_after("[material]\nambient = -0.5\n", "s.toml:6:11", "`ambient` is -0.5");
     refused_after("[material]\nshininess = 0\n", "s.toml:6:13", "`shininess` is 0");
     refused_after("[trace]\nnewton_starts = 0\n", "s.toml:6:17", "`newton_starts` is 0");

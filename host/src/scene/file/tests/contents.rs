@@ -1,5 +1,6 @@
 //! Entries of `surfaces`, groups, polygons, materials and lights.
 use super::super::super::appearance::Metal;
+use super::super::super::light::{MapOptions, Shadow};
 use super::super::super::shapes;
 use super::super::super::transform::Transform;
 use super::*;
@@ -33,6 +34,9 @@ fn the_documentation_names_every_field_in_a_scene_that_is_one() {
         "image",
         "camera",
         "light",
+        "shadow",
+        "map_size",
+        "map_bias",
         "lights",
         "material",
         "materials",
@@ -237,6 +241,23 @@ fn lights_and_mirrors() {
     assert!(parse("s.toml", &format!("{both}{CAMERA}")).is_err_and(|e| e.to_string().contains("both `light`")));
     refused_after("[material]\nreflect = 1.5\n", "s.toml:6:11", "`reflect` is 1.5");
     refused_after("[image]\nsamples = \"jitered\"\n", "s.toml:6:11", "(did you mean `jittered`?)");
+}
+
+#[test]
+fn shadows_are_chosen_per_light() {
+    let of = |table: &str| parse("s.toml", &format!("surfaces = [{{ {TORUS} }}]\n{CAMERA}\n[light]\n{table}\n"));
+    let shadow = |table: &str| of(table).expect("valid").lights[0].shadow;
+    assert_eq!((shadow(""), shadow("shadow = \"none\"")), (Shadow::None, Shadow::None));
+    assert_eq!(shadow("shadow = \"rays\""), Shadow::Rays);
+    assert_eq!(shadow("shadow = \"map\""), Shadow::Map(MapOptions::default()));
+    let table = "shadow = \"map\"\nmap_size = 300\nmap_bias = 0";
+    assert_eq!(shadow(table), Shadow::Map(MapOptions { size: 300, bias: 0.0 }));
+    for kind in ["", "shadow = \"rays\"\n", "shadow = \"none\"\n"] {
+        for (field, name) in [("map_size = 300", "map_size"), ("map_bias = 0.1", "map_bias")] {
+            let refused = of(&format!("{kind}{field}")).expect_err("refused").to_string();
+            assert!(refused.contains(&format!("`{name}` means nothing without a shadow map")), "{refused}");
+        }
+    }
 }
 
 #[test]

@@ -1,0 +1,19 @@
+//! Vectors of three numbers.
+
+pub(super) fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[k] - b[k])
+}
+
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The vector over its length; zero for a zero vector.
+pub(super) fn unit(vector: [f64; 3]) -> [f64; 3] {
+    let length = vector[0].hypot(vector[1]).hypot(vector[2]);
+    if length > 0.0 { vector.map(|c| c / length) } else { [0.0; 3] }
+}
