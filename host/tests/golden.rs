@@ -12,7 +12,7 @@ use patchray_host::cmd::render::{Drawing, draw};
 use patchray_host::scene::teapot;
 use patchray_host::scene::trace::{Method, Precision};
 use patchray_host::settings::Settings;
-use patchray_host::shade::shadows::Shadows;
+use patchray_host::shade::shadows::NO_SHADOWS;
 use patchray_host::viewed::{Viewed, Wishes};
 use std::path::Path;
 
@@ -39,8 +39,9 @@ fn every_method_draws_the_recorded_picture() {
             let mut viewed = Viewed::build(&scene.model, &settings, &view, wishes).expect("the teapot is valid");
             assert!(viewed.has_view());
             let (tracers, _) = viewed.tracers().expect("it was just made ready");
-            let (appearance, shadows) = (&scene.appearance, &Shadows::NONE);
-            let drawing = Drawing { tracers: &tracers, view: &view, appearance, shadows, outcomes: false };
+            let (appearance, shadows) = (&scene.appearance, &NO_SHADOWS);
+            let drawing =
+                Drawing { tracers: &tracers, view: &view, appearance, shadows, rows: 0..view.size[1], outcomes: false };
             let drawn = draw(&drawing, &ProgressBar::hidden());
             let mut png = Vec::new();
             drawn.picture.write_png(&mut png).expect("memory does not fail");

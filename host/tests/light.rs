@@ -7,7 +7,7 @@ use patchray_host::picture::encode;
 use patchray_host::scene::error::OnInvalid;
 use patchray_host::scene::file;
 use patchray_host::settings::Settings;
-use patchray_host::shade::shadows::Shadows;
+use patchray_host::shade::shadows::NO_SHADOWS;
 use patchray_host::viewed::{Viewed, Wishes};
 
 const SIZE: u32 = 48;
@@ -27,8 +27,9 @@ fn sphere(background: [f64; 3], material: &str, more: &str) -> (Drawn, Vec<[u8; 
     let wishes = Wishes::of(&scene.appearance);
     let mut viewed = Viewed::build(&scene.model, &Settings::default(), &view, wishes).expect("a sphere is valid");
     let (tracers, _) = viewed.tracers().expect("it was just made ready");
-    let (appearance, shadows) = (&scene.appearance, &Shadows::NONE);
-    let drawing = Drawing { tracers: &tracers, view: &view, appearance, shadows, outcomes: false };
+    let (appearance, shadows) = (&scene.appearance, &NO_SHADOWS);
+    let drawing =
+        Drawing { tracers: &tracers, view: &view, appearance, shadows, rows: 0..view.size[1], outcomes: false };
     let drawn = draw(&drawing, &ProgressBar::hidden());
     assert!(drawn.tally.hits > u64::from(SIZE * SIZE) / 3, "{} hits", drawn.tally.hits);
     let mut png = Vec::new();

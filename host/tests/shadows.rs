@@ -42,7 +42,14 @@ fn drawn(scene: &Scene, settings: &Settings) -> (Vec<f64>, Vec<MapUsed>) {
     let mut viewed = Viewed::build(&scene.model, settings, &view, Wishes::of(appearance)).expect("valid");
     let (tracers, _) = viewed.tracers().expect("it was just made ready");
     let (shadows, maps) = Shadows::prepare(&scene.model, appearance, settings, view.eye).expect("there is memory");
-    let drawing = Drawing { tracers: &tracers, view: &view, appearance, shadows: &shadows, outcomes: false };
+    let drawing = Drawing {
+        tracers: &tracers,
+        view: &view,
+        appearance,
+        shadows: &shadows,
+        rows: 0..view.size[1],
+        outcomes: false,
+    };
     let drawn = draw(&drawing, &ProgressBar::hidden());
     let mut png = Vec::new();
     drawn.picture.write_png(&mut png).expect("memory does not fail");

@@ -23,7 +23,7 @@ use crate::scene::model::Model;
 use crate::scene::teapot::common_scene;
 use crate::scene::trace::{Method, Precision};
 use crate::settings::{Flags, Settings, SizeFlag};
-use crate::shade::shadows::Shadows;
+use crate::shade::shadows::NO_SHADOWS;
 use crate::stats::{SCHEMA, Stats, Used};
 use crate::viewed::{Viewed, Wishes};
 
@@ -128,7 +128,8 @@ fn compare(
     let bar = progress((PASSES * settings.len()) as u64 * u64::from(view.size[1]), "drawing", quiet);
     let passes = (0..PASSES).map(|_| {
         let draw = |(tracers, _): &(Tracers, Used)| {
-            let drawing = Drawing { tracers, view, appearance, shadows: &Shadows::NONE, outcomes: true };
+            let drawing =
+                Drawing { tracers, view, appearance, shadows: &NO_SHADOWS, rows: 0..view.size[1], outcomes: true };
             pool.install(|| draw(&drawing, &bar))
         };
         tracers.iter().map(draw).collect::<Vec<Drawn>>()

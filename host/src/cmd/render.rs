@@ -1,5 +1,6 @@
 //! `patchray render`: a scene file in, a picture out.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -70,7 +71,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let (shadows, maps) = pool.install(|| Shadows::prepare(&loaded.model, appearance, settings, view.eye))?;
 
     let bar = progress(u64::from(size[1]), "rendering", flags.quiet);
-    let drawing = Drawing { tracers: &tracers, view: &view, appearance, shadows: &shadows, outcomes: false };
+    let rows = 0..view.size[1];
+    let drawing = Drawing { tracers: &tracers, view: &view, appearance, shadows: &shadows, rows, outcomes: false };
     let drawn = pool.install(|| draw(&drawing, &bar));
     bar.finish_and_clear();
     refuse_pixels(&drawn, scene, &loaded)?;
@@ -100,7 +102,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
 /// A picture and what drawing it came to.
 #[derive(Clone, Debug)]
 pub struct Drawn {
-    /// The picture.
+    /// The picture, of the rows that were wanted.
     pub picture: Picture,
     /// What became of each sample's ray, scan line by scan line from the top; nothing unless it was to be kept.
     pub outcomes: Vec<Outcome>,
@@ -125,7 +127,7 @@ struct Row {
 }
 
 /// A picture to be drawn.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Drawing<'d> {
     /// What traces its rays.
     pub tracers: &'d Tracers<'d>,
@@ -135,6 +137,8 @@ pub struct Drawing<'d> {
     pub appearance: &'d Appearance,
     /// The shadows of its lights.
     pub shadows: &'d Shadows,
+    /// Its rows of pixels that are wanted, from the top, 0 being the first; within its height.
+    pub rows: Range<u32>,
     /// Whether to keep what became of each ray, which takes some 80 bytes each: of a large picture, more than all else.
     pub outcomes: bool,
 }
@@ -142,7 +146,7 @@ pub struct Drawing<'d> {
 /// Draws a view, a row of pixels a job, on rayon's current threads. The result does not depend on their number. Light is
 /// counted as red, green and blue, or as nine samples of its spectrum where something is of metal.
 pub fn draw(drawing: &Drawing, bar: &ProgressBar) -> Drawn {
-    let &Drawing { view, appearance, shadows, .. } = drawing;
+    let Drawing { view, appearance, shadows, .. } = drawing;
     if appearance.has_metal() {
         draw_in(Painter::new(Sampled::new(), view.eye, appearance, shadows), drawing, bar)
     } else {
@@ -152,7 +156,7 @@ pub fn draw(drawing: &Drawing, bar: &ProgressBar) -> Drawn {
 
 fn draw_in<const N: usize>(
     painter: Painter<'_, impl Basis<N>, N>,
-    &Drawing { tracers, view, outcomes: keep, .. }: &Drawing,
+    Drawing { tracers, view, rows, outcomes: keep, .. }: &Drawing,
     bar: &ProgressBar,
 ) -> Drawn {
     let lanes = Lanes::new(tracers.picture.as_ref());
@@ -176,14 +180,15 @@ fn draw_in<const N: usize>(
                 _ => None,
             });
             row.refused = row.refused.or(refused);
-            if keep {
+            if *keep {
                 row.outcomes.extend(outcomes);
             }
         }
         bar.inc(1);
         Row { pixels: pixels(&lines), ..row }
     };
-    let rows: Vec<Row> = (0..view.size[1])
+    let drawn_rows: Vec<Row> = rows
+        .clone()
         .into_par_iter()
         .map(|py| {
             lanes.with(|lane| match &of_any {
@@ -193,14 +198,14 @@ fn draw_in<const N: usize>(
         })
         .collect();
     let mut drawn = Drawn {
-        picture: Picture::new(view.size),
+        picture: Picture::new([view.size[0], rows.len() as u32]),
         outcomes: Vec::new(),
         tally: Tally::default(),
         rays: RaysByKind::default(),
         refused: None,
         light_samples: N as u32,
     };
-    for Row { pixels, outcomes, tally, rays, refused } in rows {
+    for Row { pixels, outcomes, tally, rays, refused } in drawn_rows {
         drawn.picture.push_row(&pixels);
         drawn.outcomes.extend(outcomes);
         drawn.tally.add(&tally);

@@ -144,7 +144,9 @@ mod tests {
         let base = Material { colour: [1.0, 0.5, 0.0], ambient: 0.1, diffuse: 0.6, ..Material::default() };
         let material = Material { highlight: 0.2, shininess: 8.0, ..base };
         let lights: Vec<_> = lights.iter().map(|&at| Light { position: Some(at), ..Light::default() }).collect();
-        Shader::new(EYE, &lights, &Rgb).colour(EYE, [0.0; 3], normal, &Finish::new(&material, &Rgb))
+        Shader::new(EYE, &lights, &Rgb)
+            .colour(EYE, [0.0; 3], normal, &Finish::new(&material, &Rgb), &[])
+            .expect("no share is missing")
     }
 
     fn assert_near(found: [f64; 3], expected: [f64; 3]) {
@@ -179,8 +181,8 @@ mod tests {
         let light = Light { position: Some([3.0, 0.0, 4.0]), ..Light::default() };
         let basis = Sampled::new();
         let shader = Shader::new(EYE, &[light], &basis);
-        let found = shader.colour(EYE, [0.0; 3], Some([0.0, 0.0, 1.0]), &Finish::new(&material, &basis));
-        let shown = basis.display(found);
+        let found = shader.colour(EYE, [0.0; 3], Some([0.0, 0.0, 1.0]), &Finish::new(&material, &basis), &[]);
+        let shown = basis.display(found.expect("no share is missing"));
         assert!(shown.iter().all(|part| (part - (0.1 + 0.6 * 0.8)).abs() < 1e-8), "{shown:?}");
     }
 
@@ -192,14 +194,14 @@ mod tests {
         let finish = Finish::new(&material, &basis);
         // Toward the eye and toward the light it is 53.13 degrees, of which the half has the cosine √0.8.
         let light = Light { position: Some([4.0, 0.0, 3.0]), ..Light::default() };
-        let found = Shader::new(EYE, &[light], &basis).colour(EYE, [0.0; 3], Some([0.0, 0.0, 1.0]), &finish);
+        let found = Shader::new(EYE, &[light], &basis).colour(EYE, [0.0; 3], Some([0.0, 0.0, 1.0]), &finish, &[]);
         let gold = finish.metal.expect("gold is a metal");
-        for (found, index) in found.into_iter().zip(gold) {
+        for (found, index) in found.expect("no share is missing").into_iter().zip(gold) {
             let cosine = 0.8f64.sqrt();
             assert!((found - 0.5 * cosine * index.reflectance(cosine)).abs() < 1e-12);
         }
-        let dark = Shader::new(EYE, &[], &basis).colour(EYE, [0.0; 3], None, &finish);
-        assert_eq!(dark, [0.0; 9]);
+        let dark = Shader::new(EYE, &[], &basis).colour(EYE, [0.0; 3], None, &finish, &[]);
+        assert_eq!(dark, Some([0.0; 9]));
     }
 
     #[test]

@@ -209,6 +209,7 @@ fn reflected(ray: &RayLine, met: &Met) -> Option<RayLine> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::shadows::NO_SHADOWS;
     use super::super::spectrum::{Rgb, Sampled};
     use super::*;
     use crate::scanline::Found;
@@ -257,7 +258,7 @@ mod tests {
 
     fn painted(appearance: &Appearance, met: Outcome, mirrored: Outcome) -> Colour {
         let mut lane = Answers(mirrored);
-        Painter::new(Rgb, DOWN.origin, appearance, &Shadows::NONE).paint(lanes(&mut lane), &[DOWN], &[met]).colours[0]
+        Painter::new(Rgb, DOWN.origin, appearance, &NO_SHADOWS).paint(lanes(&mut lane), &[DOWN], &[met]).colours[0]
     }
 
     fn surface(t: f64) -> Outcome {
@@ -322,7 +323,7 @@ mod tests {
     fn mirrored_rays_are_counted() {
         let count = |reflect| {
             let scene = floor(reflect);
-            let painter = Painter::new(Rgb, DOWN.origin, &scene, &Shadows::NONE);
+            let painter = Painter::new(Rgb, DOWN.origin, &scene, &NO_SHADOWS);
             let outcomes = [Outcome::Miss, surface(1.0), Outcome::Miss];
             painter.paint(lanes(&mut Answers(Outcome::Miss)), &[DOWN; 3], &outcomes).mirrored
         };
@@ -338,7 +339,7 @@ mod tests {
             *material = Material { metal: Some(metal), reflect, ..*material };
         }
         let ray = RayLine { origin: [-0.4, 0.0, 0.3], direction: [4.0, 0.0, -3.0], ..DOWN };
-        let painter = Painter::new(Sampled::new(), ray.origin, &scene, &Shadows::NONE);
+        let painter = Painter::new(Sampled::new(), ray.origin, &scene, &NO_SHADOWS);
         painter.paint(lanes(&mut Answers(mirrored)), &[ray], &[Outcome::Miss]).colours[0].expect("no ray is given up")
     }
 

@@ -62,10 +62,10 @@ pub struct Facing {
     pub cosine: f64,
 }
 
-impl Shadows {
-    /// No light casts a shadow.
-    pub const NONE: Self = Shadows { casts: Vec::new(), clear: Clear { tolerance: 0.0, epsilon: 0.0 } };
+/// Those of lights that cast none.
+pub static NO_SHADOWS: Shadows = Shadows { casts: Vec::new(), clear: Clear { tolerance: 0.0, epsilon: 0.0 } };
 
+impl Shadows {
     /// The shadows of a scene's lights; those without a place are at the eye. Draws the maps, on rayon's current threads, and
     /// tells what they took; of rays it prepares nothing.
     ///
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn where_no_light_casts_a_shadow_nothing_is_kept() {
-        let visibility = Visibility::new(&Shadows::NONE, &[], 1000, 3);
+        let visibility = Visibility::new(&NO_SHADOWS, &[], 1000, 3);
         assert!(visibility.shares.is_empty() && visibility.of_point(7).is_empty());
     }
 }
