@@ -4,6 +4,8 @@
 //! evenly along the image, so that three numbers are the plane. Ours: held against its own depth alone, a surface that stands
 //! askew to the light would darken itself in stripes, unless it were raised by as much as it falls along a texel.
 
+use rayon::prelude::*;
+
 use super::vector::{cross, dot, subtract, unit};
 use crate::scanline::Outcome;
 use crate::scene::camera::View;
@@ -13,11 +15,16 @@ use crate::scene::sampling::Sampling;
 
 /// What the light sees in the middle of a texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Texel {
+struct Texel {
     /// 1 over the depth of the nearest surface; 0 where there is none, NaN where that is not known.
     inverse: f32,
     /// What it grows by, along the plane that touches the surface, toward the next texel to the right, and to the one below.
     slope: [f32; 2],
+}
+
+impl Texel {
+    /// What is not known.
+    const UNKNOWN: Self = Texel { inverse: f32::NAN, slope: [0.0; 2] };
 }
 
 /// Bytes of a texel.
@@ -101,14 +108,21 @@ impl Face {
         }
     }
 
-    /// The texels of a row, from what became of their rays.
-    pub(super) fn row(&self, rays: &[RayLine], outcomes: &[Outcome]) -> Vec<Texel> {
-        rays.iter().zip(outcomes).map(|(ray, outcome)| self.texel(outcome, ray.direction)).collect()
-    }
-
-    /// Adds the next row from the top.
-    pub(super) fn push_row(&mut self, row: &[Texel]) {
-        self.texels.extend_from_slice(row);
+    /// Draws the face: `draw` is asked for each row from the top, on rayon's current threads, for the rays of its texels and what
+    /// became of them. What else it gives is returned, in order.
+    pub(super) fn draw<T: Send>(&mut self, draw: impl Fn(u32) -> (Vec<RayLine>, Vec<Outcome>, T) + Sync) -> Vec<T> {
+        let side = self.size as usize;
+        let mut texels = vec![Texel::UNKNOWN; side * side];
+        let rows = texels.par_chunks_mut(side).zip(0..self.size).map(|(texels, line)| {
+            let (rays, outcomes, more) = draw(line);
+            for (texel, (ray, outcome)) in texels.iter_mut().zip(rays.iter().zip(&outcomes)) {
+                *texel = self.texel(outcome, ray.direction);
+            }
+            more
+        });
+        let more = rows.collect();
+        self.texels = texels;
+        more
     }
 
     fn texel(&self, outcome: &Outcome, direction: [f64; 3]) -> Texel {
@@ -117,7 +131,7 @@ impl Face {
             Outcome::Miss => return Texel { inverse: 0.0, slope: [0.0; 2] },
             // Not known, and therefore neither.
             Outcome::GaveUp { .. } | Outcome::Refused(_) | Outcome::Invalid => {
-                return Texel { inverse: f32::NAN, slope: [0.0; 2] };
+                return Texel::UNKNOWN;
             }
         };
         // Directions are one unit deep, so that t is the depth.

@@ -4,7 +4,6 @@
 //! them is the paper's remark. Surfaces alone are in a map: polygons, which may reach far beyond it, are few and flat, and
 //! a ray is asked whether it meets one.
 
-use rayon::prelude::*;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -83,15 +82,13 @@ impl ShadowMap {
             }?;
             let (tracer, _) = viewed.tracer()?;
             let lanes = Lanes::new(tracer.as_ref());
-            let trace = |line: u32| {
+            let tallies = face.draw(|line| {
                 let (mut outcomes, mut tally) = (Vec::new(), Tally::default());
                 let (samples, rays) = (picture.scan_line(line), row(&picture, line));
                 lanes.with(|lane| lane.trace_line(&samples, &rays, &mut outcomes, &mut tally));
-                (face.row(&rays, &outcomes), tally)
-            };
-            let rows: Vec<_> = (0..size).into_par_iter().map(trace).collect();
-            for (texels, tally) in rows {
-                face.push_row(&texels);
+                (rays, outcomes, tally)
+            });
+            for tally in tallies {
                 used.rays += tally.rays;
                 used.gave_up += tally.gave_up_in_all();
             }
