@@ -52,7 +52,8 @@ impl Default for MapOptions {
     }
 }
 
-/// The most texels along a side of a shadow map: one takes 12 bytes, so that the largest map takes 800 MB.
+/// The most texels along a side of a shadow map: one takes 12 bytes, so that the largest takes 800 MB, and six times that where
+/// it has six faces.
 pub const MAX_MAP_SIDE: u32 = 8192;
 
 /// How the shadows of a light are found, as written.
