@@ -107,7 +107,8 @@ fn a_step_by_a_singular_jacobian_is_not_believed() {
 #[test]
 fn a_tolerance_below_rounding_makes_no_jacobian_regular() {
     let pole = [3.0; 3];
-    let points = [([-0.0625, -0.0625, -5.125], 4.0), (pole, 0.796875), ([3.0, 0.0625, 0.0], 0.015625), (pole, 0.765625)];
+    let points =
+        [([-0.0625, -0.0625, -5.125], 4.0), (pole, 0.796875), ([3.0, 0.0625, 0.0], 0.015625), (pole, 0.765625)];
     let bounds = points.iter().fold(Aabb::EMPTY, |all, (point, _)| all.with(*point));
     let frame = Frame::new(bounds);
     let scaled = points.map(|(point, weight)| Weighted::new(frame.from_nets(point), weight / 4.0));
