@@ -459,7 +459,7 @@ impl<P: InC + Kind + Slot> Prepared<P> {
 
     /// No counter of an answer is beyond its budget.
     pub(super) fn within_limits(&self, function: usize) {
-        if function < METHODS || function > ALL_HITS || self.work.is_null() || self.limits.is_null() {
+        if !(METHODS..=ALL_HITS).contains(&function) || self.work.is_null() || self.limits.is_null() {
             return;
         }
         // SAFETY: the call had them read and written there.
