@@ -84,6 +84,10 @@ pub(super) fn limits_in_c<S: Scalar>(limits: &Limits<S>) -> patchray_limits<S> {
 /// # Safety
 /// So many can be read and written there, and hold numbers of 4 or 8 bytes and nothing else.
 unsafe fn words<'w, T>(place: *mut T, count: usize) -> &'w mut [u32] {
+    if place.is_null() {
+        // Of a table that this function does not take.
+        return &mut [];
+    }
     // SAFETY: the caller's.
     unsafe { std::slice::from_raw_parts_mut(place.cast(), count * size_of::<T>() / 4) }
 }
