@@ -139,7 +139,10 @@ impl<S: Scalar> Local<S> {
         }
         let share = distance * self.weight / self.determinant;
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
-        Some(slopes.map(|[f, g]| [(gv * f - fv * g) * share, (fu * g - gu * f) * share]))
+        let rate = |[f, g]: [S; 2]| [(gv * f - fv * g) * share, (fu * g - gu * f) * share];
+        let [first, second] = slopes;
+        // One by one, for `map` of a nested array may stay a call, whose results come through memory.
+        Some([rate(first), rate(second)])
     }
 
     /// How far in u and in v the inverse of the Jacobian carries an error of this length in f and g, times the weight.

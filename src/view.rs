@@ -299,7 +299,9 @@ impl<'m, P: Point> View<'m, P> {
         let t_per_depth = *unscale * inverse;
         let direction = [slopes[0], slopes[1], one];
         let planes = Planes::turned(origin, direction, ahead * t_per_depth, t_per_depth, interval);
-        let turning = [right, up].map(|v| [v[0] - slopes[0] * v[2], v[1] - slopes[1] * v[2]].map(|c| c * inverse));
+        let turns = |[x, y, z]: [P::Scalar; 3]| [(x - slopes[0] * z) * inverse, (y - slopes[1] * z) * inverse];
+        // One by one, for `map` of a nested array may stay a call, whose results come through memory.
+        let turning = [turns(*right), turns(*up)];
         Facing { place, planes, range, ahead, turning }
     }
 }

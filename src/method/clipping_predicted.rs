@@ -149,10 +149,8 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         work: &mut Work,
     ) -> Result<bool, Limit> {
         let (ray, limits, nearby) = (self.ray, self.limits, self.nearby);
-        let Some(window) = Region::WHOLE.meet(start.map(|c| {
-            let half = P::Scalar::from_f64(WINDOW);
-            [c - half, c + half]
-        })) else {
+        let ([u, v], half) = (start, P::Scalar::from_f64(WINDOW));
+        let Some(window) = Region::WHOLE.meet([[u - half, u + half], [v - half, v + half]]) else {
             return Ok(false);
         };
         let Some(of_window) = self.view.surface(surface as usize) else {

@@ -66,10 +66,11 @@ impl<S: Scalar> Followed<S> {
         let along = x * self.way[0] + y * self.way[1];
         let third = along * along * (S::from_u32(3) + along + along);
         let ([by_x, by_y], [xx, xy, yy]) = (&self.slopes, &self.bends);
-        Some(core::array::from_fn(|k| {
+        let parameter = |k: usize| {
             let smooth = x * (by_x[k] + x * xx[k] + y * xy[k]) + y * (by_y[k] + y * yy[k]);
             self.at[k] + smooth - third * self.excess[k]
-        }))
+        };
+        Some([parameter(0), parameter(1)])
     }
 
     /// Keeps a root that a ray found, near which `local` holds.

@@ -119,8 +119,10 @@ fn from_patch<P: Point>(
         }
     }
     // Ours: the third start is the exit, or the parallelogram where the entrance came first.
-    let pierces = crossing.pierces().map(|ends| ends.map(|end| patch.at(&end)));
-    let [entrance, exit] = pierces.map_or([None, None], |ends| ends.map(Some));
+    let (entrance, exit) = match crossing.pierces() {
+        Some([first, last]) => (Some(patch.at(&first)), Some(patch.at(&last))),
+        None => (None, None),
+    };
     let others = if entrance_first { [entrance, patch.parallelogram(crossing), exit] } else { [entrance, exit, None] };
     for start in others.into_iter().flatten() {
         if starts_left == 0 {
