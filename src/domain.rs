@@ -116,7 +116,7 @@ fn level(index: u16) -> u32 {
 /// 2^−level.
 #[inline(always)]
 fn width<S: Scalar>(index: u16) -> S {
-    const WIDTHS: [f64; 16] = {
+    const WIDTHS: [f32; 16] = {
         let mut widths = [1.0; 16];
         let mut level = 1;
         while level < 16 {
@@ -126,7 +126,7 @@ fn width<S: Scalar>(index: u16) -> S {
         widths
     };
     // The mask says to the compiler what is so in any case.
-    S::from_f64(WIDTHS[level(index) as usize & 15])
+    S::from_f32(WIDTHS[level(index) as usize & 15])
 }
 
 #[cfg(test)]

@@ -60,6 +60,8 @@ pub trait Scalar:
 
     /// The nearest number of this type; how constants are written.
     fn from_f64(value: f64) -> Self;
+    /// The same number; exact, and for `f32` without arithmetic, which in `f64` is slow where hardware has only `f32`.
+    fn from_f32(value: f32) -> Self;
     /// The same number in `f64`; exact.
     fn to_f64(self) -> f64;
     /// The nearest number of this type.
@@ -171,6 +173,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
                 value as $float
+            }
+            #[inline(always)]
+            fn from_f32(value: f32) -> Self {
+                $float::from(value)
             }
             #[inline(always)]
             fn to_f64(self) -> f64 {
