@@ -130,6 +130,19 @@ impl<S: Scalar> Local<S> {
         !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * lengths * self.weight)
     }
 
+    /// Whether the step leads to within the tolerance as far as rounding is concerned, of which Taylor's theorem says nothing:
+    /// the determinant's share of it, see [`Local::may_be_singular`], is one of the step, and so of the residual. Of a flat net
+    /// seen edge on all of the determinant may be rounding.
+    #[inline(always)]
+    fn is_regular_enough<P: Point<Scalar = S>>(&self, tolerance: S) -> bool {
+        let ([fu, gu], [fv, gv]) = (self.du, self.dv);
+        let lengths = fu.abs() + gu.abs() + (fv.abs() + gv.abs());
+        // Distances are residuals over the weight, which may fall along the step.
+        let falls = if P::RATIONAL { S::from_u32(16) } else { S::ONE };
+        let rounding = S::EPSILON * S::from_u32(32) * falls;
+        self.residual() * rounding * lengths <= (tolerance + noise()) * self.determinant.abs()
+    }
+
     /// How fast the root moves, in u and in v, if the ray's slopes change as fast as each of these: f and g at a fixed place on
     /// the surface then change by that times the distance from the eye.
     #[inline(always)]
@@ -214,12 +227,6 @@ pub(crate) struct Place<S> {
 }
 
 impl<S: Scalar> Place<S> {
-    /// See [`Local::is_steep`].
-    #[inline(always)]
-    fn is_steep<P: Point<Scalar = S>>(&self, net: &Net<'_, P>, planes: &Planes<S>, limits: &Limits<S>) -> bool {
-        self.local.is_steep(net.degrees(), planes.reach() * weighted::<P>(), limits.tolerance)
-    }
-
     /// The root there; `whole` is the surface's projected net.
     #[inline(always)]
     pub(crate) fn root<P: Point<Scalar = S>>(
@@ -230,7 +237,7 @@ impl<S: Scalar> Place<S> {
         limits: &Limits<S>,
         basis: &mut BasisView<'_, S>,
     ) -> Result<Root<S>, Limit> {
-        if !self.is_steep(net, planes, limits) {
+        if !self.local.is_steep(net.degrees(), planes.reach() * weighted::<P>(), limits.tolerance) {
             return self.shallow_root(net, whole, planes, limits, basis);
         }
         let depth = planes.depth_on(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
@@ -373,7 +380,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     /// The iteration may leave the patch that gave the start: it works on the whole surface.
     pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         match self.iterate(start, work)? {
-            Some(place) => self.root(&place, work),
+            Some(place) => self.root(&place).map(Some),
             None => Ok(None),
         }
     }
@@ -386,32 +393,16 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         work: &mut Work,
     ) -> Result<Option<Followed<P::Scalar>>, Limit> {
         match self.iterate(start, work)? {
-            Some(place) => Ok(self.root(&place, work)?.map(|root| (root, place.local))),
+            Some(place) => Ok(Some((self.root(&place)?, place.local))),
             None => Ok(None),
         }
     }
 
-    /// The root at a place that the iteration came to, if it is one.
+    /// The root at a place that the iteration came to.
     #[inline(always)]
-    fn root(&mut self, place: &Place<P::Scalar>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
-        if !place.is_steep(&self.surface.net, self.planes, self.limits) && !self.is_seen(place, work)? {
-            return Ok(None);
-        }
+    fn root(&mut self, place: &Place<P::Scalar>) -> Result<Root<P::Scalar>, Limit> {
         let flat = self.flat.get(..self.surface.net.points().len()).ok_or(Limit::Scratch)?;
-        place.root(&self.surface.net, flat, self.planes, self.limits, self.basis).map(Some)
-    }
-
-    /// Whether the ray is seen to pass a place, where a step by a Jacobian that may be all rounding led to it, as of a flat net
-    /// seen edge on: the step may be rounding too, and what it leaves is not what Taylor's theorem says.
-    #[cold]
-    #[inline(never)]
-    fn is_seen(&mut self, place: &Place<P::Scalar>, work: &mut Work) -> Result<bool, Limit> {
-        if !place.local.may_be_singular() {
-            return Ok(true);
-        }
-        // At a pole the residual ended the iteration, and was seen there.
-        let local = if place.local.at == place.at { place.local } else { self.local(place.at, work)? };
-        Ok(local.distance() <= self.limits.tolerance + noise())
+        place.root(&self.surface.net, flat, self.planes, self.limits, self.basis)
     }
 
     /// The surface at (u, v) to first order.
@@ -479,7 +470,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
             };
             let (next_u, next_v) = (u + du, v + dv);
             let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
-            if surface.strays([du, dv]) <= limits.tolerance {
+            if surface.strays([du, dv]) <= limits.tolerance && local.is_regular_enough::<P>(limits.tolerance) {
                 // Converged; what is left to see is whether the root lies on the surface or beyond its edge. Of a root on
                 // an edge the step may leave as much on the far side as on the near: neighbours must not both refuse it.
                 if local.may_hold([next_u - held_u, next_v - held_v], limits.tolerance) {

@@ -15,7 +15,7 @@ pub struct Judge<'c> {
     pub(super) truths: Vec<Truth>,
     precision: Precision,
     /// The model's; of a model without extent its largest coordinate, or 1.
-    pub(super) diagonal: f64,
+    diagonal: f64,
 }
 
 impl<'c> Judge<'c> {
@@ -33,6 +33,11 @@ impl<'c> Judge<'c> {
     /// What is true of a ray, by its place; `None` if there is no such ray.
     pub fn truth(&self, place: usize) -> Option<&Truth> {
         self.truths.get(place)
+    }
+
+    /// The model's diagonal, in which margins are measured.
+    pub fn diagonal(&self) -> f64 {
+        self.diagonal
     }
 
     /// Whether an answer to the ray in this place is wrong, and the truth sure enough to say so. One that was given up, or

@@ -241,7 +241,7 @@ fn add(judge: &Judge, answers: &Answers, score: &mut Score) {
             if let Some(surface) = judge.case.model.surfaces.get(found.surface).filter(|_| !found.grazing) {
                 // What t cannot say any better is no fault of the answer.
                 let off = truth::residual(surface, ray, found) - judge.slack(found.t, ray);
-                score.residual = score.residual.max(off / judge.diagonal);
+                score.residual = score.residual.max(off / judge.diagonal());
             }
         }
         if !judge.is_judged(truth) {

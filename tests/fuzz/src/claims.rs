@@ -6,6 +6,7 @@ use patchray::limits::{Extent, Limits, Work};
 use patchray::ray::Hit;
 use patchray::scalar::Scalar;
 use patchray_host::scanline::Found;
+use patchray_host::scene::model::ModelSurface;
 use patchray_host::scene::rays::RayLine;
 use patchray_host::stress::truth::residual;
 use std::fmt::Debug;
@@ -46,18 +47,36 @@ pub(crate) fn in_range<S: Scalar>(hit: &Hit<S>, [t_min, t_max]: [S; 2], surfaces
 /// projected nets, whose error is that of all control points.
 const OF_NETS: f64 = 8.0;
 
+/// By how much, as a length, a root of a surface may lie off its ray: by the tolerance, and by what rounding leaves, of (u, v) not
+/// least, across whose last digit a rational surface moves by as much more as its weights are apart.
+pub(crate) fn blur(surface: &ModelSurface, largest: f64, unit: f64, tolerance: f64) -> f64 {
+    let degrees = (surface.degree_u + surface.degree_v) as f64;
+    let rounding = unit * f64::from(RESIDUAL) * degrees * weight_ratio(surface);
+    // Coordinates are scaled to below 1, and to a half at least.
+    OF_NETS * 2.0 * largest * (tolerance.max(0.0) + rounding)
+}
+
+/// The largest coordinate of a case's control points.
+pub(crate) fn largest_coordinate(case: &Case) -> f64 {
+    let points = case.model.surfaces.iter().flat_map(|surface| &surface.points);
+    points.flat_map(|[x, y, z, _]| [x, y, z]).fold(0.0, |most, c| most.max(c.abs()))
+}
+
+/// How far a surface's weights are apart.
+fn weight_ratio(surface: &ModelSurface) -> f64 {
+    let weights = surface.points.iter().map(|&[.., w]| w);
+    weights.clone().fold(0.0, f64::max) / weights.fold(f64::INFINITY, f64::min)
+}
+
 /// The point of the surface at a hit's (u, v) is the ray's point at its t, to the tolerance and what rounding leaves.
 ///
 /// Cases whose numbers leave no such claim are passed over: a tolerance that is no small number, coordinates whose products
 /// leave `f64`, weights so far apart that quotients lose their digits.
 pub(crate) fn on_the_ray<S: Scalar>(hit: &Hit<S>, case: &Case, ray: &RayLine, limits: &Limits<S>, what: impl Debug) {
     let surface = &case.model.surfaces[hit.surface as usize];
-    let points = || case.model.surfaces.iter().flat_map(|surface| &surface.points);
-    let largest = points().flat_map(|[x, y, z, _]| [x, y, z]).fold(0.0, |most: f64, c| most.max(c.abs()));
-    let weights = surface.points.iter().map(|&[.., w]| w);
-    let ratio = weights.clone().fold(0.0, f64::max) / weights.fold(f64::INFINITY, f64::min);
+    let largest = largest_coordinate(case);
+    let ratio = weight_ratio(surface);
     let tolerance = limits.tolerance.to_f64();
-    let unit = S::EPSILON.to_f64();
     let fits = |c: f64| c == 0.0 || (1e-30..1e30).contains(&c.abs());
     let all_fit = [largest].iter().chain(&ray.origin).chain(&ray.direction).all(|&c| fits(c));
     if !(all_fit && largest > 0.0 && tolerance < 0.01 && ratio < 1e3) {
@@ -73,12 +92,10 @@ pub(crate) fn on_the_ray<S: Scalar>(hit: &Hit<S>, case: &Case, ray: &RayLine, li
     };
     let reach = ray.origin.iter().fold(largest, |most, c| most.max(c.abs()));
     let [x, y, z] = ray.direction;
+    let unit = S::EPSILON.to_f64();
     // What rounding t can move a point by; and what rounding the origin's way to the scene can.
     let slack = 4.0 * unit * (found.t.abs() * x.hypot(y).hypot(z) + reach);
-    let degrees = (surface.degree_u + surface.degree_v) as f64;
-    let rounding = unit * f64::from(RESIDUAL) * degrees * ratio;
-    // Coordinates are scaled to below 1, and to a half at least.
-    let allowed = OF_NETS * 2.0 * largest * (tolerance.max(0.0) + rounding) + slack;
+    let allowed = blur(surface, largest, unit, tolerance) + slack;
     let off = residual(surface, ray, &found);
     assert!(
         off <= allowed,
