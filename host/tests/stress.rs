@@ -45,9 +45,11 @@ fn allowed(family: &str, method: Method) -> u32 {
         // Two clips settle a hit of a plane; a ray in it is followed along the plane for 21 steps.
         ("grazing-plane", Method::Clipping | Method::ClippingCoherent) => 11,
         (_, Method::Clipping | Method::ClippingCoherent) => 10,
-        // A hit is two steps in one patch; of a fold one patch is clipped, and then the surface.
-        ("grazing-plane", _) => 20,
+        // A hit of a plane is one step, by a determinant without error; of a small one each step brings some digits, and none
+        // is believed before they are enough.
+        ("grazing-plane", _) => 24,
         ("poles", _) => 13,
+        // A hit is two steps in one patch; of a fold one patch is clipped, and then the surface.
         (_, _) => 200,
     }
 }
