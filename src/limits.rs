@@ -195,6 +195,11 @@ macro_rules! counters {
             pub fn counts(&self) -> [u32; Work::COUNT] {
                 [$(self.$name),*]
             }
+
+            /// What was counted since the counters were these: of one ray, where they go on from ray to ray.
+            pub fn since(&self, before: &Work) -> Work {
+                Work { $($name: self.$name.saturating_sub(before.$name)),* }
+            }
         }
     };
 }

@@ -86,9 +86,9 @@ impl<'m, S: Scalar> Patches<'m, S> {
         self.patches
     }
 
-    /// Where a surface's patches begin and end.
+    /// The number, among all, of a surface's first patch, and of the one after its last; `None` if there is no such surface.
     #[inline]
-    pub(crate) fn range(&self, surface: usize) -> Option<(usize, usize)> {
+    pub fn range(&self, surface: usize) -> Option<(usize, usize)> {
         Some((*self.first.get(surface)? as usize, *self.first.get(surface + 1)? as usize))
     }
 

@@ -1,7 +1,9 @@
 //! The host side of `patchray`: files in, pictures and numbers out.
 pub mod bake;
 pub mod batch;
+pub mod channels;
 pub mod cmd;
+pub mod drawing;
 pub mod judge;
 pub mod lower;
 pub mod measure;

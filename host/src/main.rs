@@ -5,13 +5,13 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use miette::MietteHandlerOpts;
-use patchray_host::cmd::{Failure, bake, demo, info, query, render, report, stress, study, tables};
+use patchray_host::cmd::{Failure, bake, demo, diff, info, merge, query, render, report, stress, study, tables};
 
 /// Traces rays against Bézier surfaces themselves, without tessellation.
 ///
 /// Without a verb it draws the built-in teapot with every method, compares each pixel with the oracle, and prints a table.
 ///
-/// Exit codes: 0 done, 1 the answer is no, 2 usage, 3 input refused, 4 capacity, 5 internal or I/O.
+/// Exit codes: 0 done, 1 the answer is no, 2 usage, 3 input refused, 4 capacity, 5 internal or I/O, 130 interrupted.
 #[derive(Parser, Debug)]
 #[command(name = "patchray", version, args_conflicts_with_subcommands = true)]
 struct Cli {
@@ -25,6 +25,10 @@ struct Cli {
 enum Verb {
     /// Draw a scene
     Render(render::RenderArgs),
+    /// Put parts of a picture together, drawn with `render --rows`: the same bytes as of one run
+    Merge(merge::MergeArgs),
+    /// Say whether two pictures are the same, and how they differ: exit code 0 if they are, 1 if not
+    Diff(diff::DiffArgs),
     /// Answer a batch of rays
     Query(query::QueryArgs),
     /// Say what a file holds, and the memory that each method needs for it
@@ -57,6 +61,8 @@ fn main() -> ExitCode {
     let result = match &cli.verb {
         None => demo::run(&cli.demo),
         Some(Verb::Render(args)) => render::run(args),
+        Some(Verb::Diff(args)) => diff::run(args),
+        Some(Verb::Merge(args)) => merge::run(args),
         Some(Verb::Query(args)) => query::run(args),
         Some(Verb::Info(args)) => info::run(args),
         Some(Verb::Bake(args)) => bake::run(args),

@@ -5,7 +5,7 @@ use crate::lower::{LowerError, Stages};
 use crate::prepared::Prepared;
 use crate::report::tables::{RaysKind, RaysRun, Run, SamplingRun};
 use crate::report::times::Times;
-use crate::scanline::{Each, Lane, Outcome, Tally, Tracer, rays_of, row};
+use crate::scanline::{Lane, Outcome, Tally, Tracer, rays_of, row};
 use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
 use crate::scene::model::Model;
@@ -15,6 +15,7 @@ use crate::scene::shapes::Random;
 use crate::scene::trace::Method;
 use crate::settings::Settings;
 use crate::viewed::{Viewed, Wishes};
+use patchray::limits::Work;
 use std::ops::Range;
 
 /// A scene to measure methods on.
@@ -134,8 +135,9 @@ fn in_turn<T>(
 }
 
 /// How many points are more than the roots that there are on their ray.
-pub(crate) fn found_twice(each: &[Each], truths: &[Truth]) -> u64 {
-    let excess = |(each, truth): (&Each, &Truth)| u64::from(each.points).saturating_sub(truth.roots as u64);
+pub(crate) fn found_twice(each: &[Work], truths: &[Truth]) -> u64 {
+    let excess =
+        |(each, truth): (&Work, &Truth)| u64::from(each.intersection_points).saturating_sub(truth.roots as u64);
     each.iter().zip(truths).filter(|(_, truth)| !truth.open).map(excess).sum()
 }
 
@@ -388,7 +390,8 @@ mod tests {
     fn points_beyond_the_roots_were_found_twice() {
         let truth = |roots, open| Truth { closest: Some(1.0), roots, open, margin: 1.0 };
         let truths = [truth(2, false), truth(2, false), truth(0, true)];
-        let each = [1, 5, 7].map(|points| Each { points, steps: 9 });
+        let each =
+            [1, 5, 7].map(|intersection_points| Work { intersection_points, newton_steps: 9, ..Work::default() });
         assert_eq!(found_twice(&each, &truths), 3);
     }
 }

@@ -1,7 +1,9 @@
 //! A lowered scene of whichever point type it needs: plain or weighted, `f32` or `f64`.
 
 use patchray::limits::Work;
+use patchray::patch::Patches;
 use patchray::point::{Plain, Point, Weighted};
+use patchray::scalar::Scalar;
 
 use crate::bake::Baked;
 use crate::lower::{LowerError, Lowered, Stages, unfit};
@@ -139,6 +141,13 @@ fn any_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn
     }
 }
 
+fn patch_at<S: Scalar>(patches: &Patches<'_, S>, surface: usize, at: [f64; 2]) -> Option<u32> {
+    let [u, v] = at.map(S::from_f64);
+    let (first, _) = patches.range(surface)?;
+    let within = patches.of_surface(surface)?.iter().position(|patch| patch.domain().holds(u, v))?;
+    u32::try_from(first + within).ok()
+}
+
 impl Prepared {
     /// Lowers `model` in the precision of `settings`, and builds `stages`.
     ///
@@ -255,6 +264,11 @@ impl Prepared {
     /// The number of patches.
     pub fn patches(&self) -> u64 {
         any!(self, lowered => lowered.patches().all().len() as u64)
+    }
+
+    /// The number, among all, of the patch that holds the point (u, v) of a surface; `None` without patches.
+    pub fn patch_at(&self, surface: usize, [u, v]: [f64; 2]) -> Option<u32> {
+        any!(self, lowered => patch_at(&lowered.patches(), surface, [u, v]))
     }
 
     /// The bytes that `stages` take of what was built, by kind.

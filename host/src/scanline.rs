@@ -78,28 +78,12 @@ pub struct Tally {
     /// conversion of numbers and the normals are outside.
     pub seconds: f64,
     /// What each ray took, in order: only if there is a list for it when rays are traced.
-    pub each: Option<Vec<Each>>,
+    pub each: Option<Vec<Work>>,
 }
 
-/// What one ray took, by the kernel's counters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Each {
-    /// Its intersection points.
-    pub points: u32,
-    /// Its Newton steps and clips together.
-    pub steps: u32,
-}
-
-impl Each {
-    /// What counters that began at 0 have come to.
-    fn of(work: &Work) -> Self {
-        Each { points: work.intersection_points, steps: work.newton_steps.saturating_add(work.clip_steps) }
-    }
-
-    /// What was added since they had come to `before`.
-    fn since(self, before: Each) -> Self {
-        Each { points: self.points.saturating_sub(before.points), steps: self.steps.saturating_sub(before.steps) }
-    }
+/// A ray's Newton steps and clips together.
+pub fn steps(work: &Work) -> u32 {
+    work.newton_steps.saturating_add(work.clip_steps)
 }
 
 impl Tally {
@@ -273,7 +257,7 @@ struct MethodLane<'t, M: Method<P>, P: Point> {
 /// kernel's last stores.
 struct Counting<'s> {
     sums: &'s mut [u64; Work::COUNT],
-    each: Option<&'s mut Vec<Each>>,
+    each: Option<&'s mut Vec<Work>>,
     works: [Work; 2],
     rays: usize,
 }
@@ -304,12 +288,12 @@ impl<'s> Counting<'s> {
 }
 
 #[inline(always)]
-fn add(sums: &mut [u64; Work::COUNT], each: &mut Option<&mut Vec<Each>>, work: &Work) {
+fn add(sums: &mut [u64; Work::COUNT], each: &mut Option<&mut Vec<Work>>, work: &Work) {
     for (sum, count) in sums.iter_mut().zip(work.counts()) {
         *sum += u64::from(count);
     }
     if let Some(each) = each {
-        each.push(Each::of(work));
+        each.push(*work);
     }
 }
 

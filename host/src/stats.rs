@@ -74,6 +74,9 @@ pub struct Stats {
     /// The samples of a pixel, for a picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub samples: Option<Sampling>,
+    /// The rows that this run drew, as `A..B,C..D`, for a picture of which it did not draw all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rows: Option<String>,
     /// Rays by what they are for, for a picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rays_by_kind: Option<RaysByKind>,
@@ -170,6 +173,7 @@ impl Stats {
             ray_file: None,
             size: None,
             samples: None,
+            rows: None,
             rays_by_kind: None,
             light_samples: None,
             methods_by_kind: None,

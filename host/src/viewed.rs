@@ -119,6 +119,11 @@ impl Viewed {
         &self.settings
     }
 
+    /// As [`Prepared::patch_at`].
+    pub fn patch_at(&self, surface: usize, at: [f64; 2]) -> Option<u32> {
+        self.prepared.patch_at(surface, at)
+    }
+
     /// The most work that one of the picture's rays can take.
     pub fn worst_case(&self) -> Work {
         if self.view {

@@ -7,8 +7,8 @@
 
 use clap::ValueEnum;
 use image::RgbImage;
-use indicatif::ProgressBar;
-use patchray_host::cmd::render::{Drawing, draw};
+use patchray_host::drawing::{Drawing, Watch, draw};
+use patchray_host::picture::rows::Rows;
 use patchray_host::scene::teapot;
 use patchray_host::scene::trace::{Method, Precision};
 use patchray_host::settings::Settings;
@@ -40,9 +40,15 @@ fn every_method_draws_the_recorded_picture() {
             assert!(viewed.has_view());
             let (tracers, _) = viewed.tracers().expect("it was just made ready");
             let (appearance, shadows) = (&scene.appearance, &NO_SHADOWS);
-            let drawing =
-                Drawing { tracers: &tracers, view: &view, appearance, shadows, rows: 0..view.size[1], outcomes: false };
-            let drawn = draw(&drawing, &ProgressBar::hidden());
+            let drawing = Drawing {
+                tracers: &tracers,
+                view: &view,
+                appearance,
+                shadows,
+                rows: Rows::all(view.size[1]),
+                outcomes: false,
+            };
+            let drawn = draw(&drawing, &Watch::default());
             let mut png = Vec::new();
             drawn.picture.write_png(&mut png).expect("memory does not fail");
             let drawn = image::load_from_memory(&png).expect("what was written can be read").to_rgb8();

@@ -1,9 +1,9 @@
 //! Light neither gained nor lost: pictures of one sphere in a world that is lit evenly, by colours and by nine samples of the
 //! spectrum.
 
-use indicatif::ProgressBar;
-use patchray_host::cmd::render::{Drawing, Drawn, draw};
+use patchray_host::drawing::{Drawing, Drawn, Watch, draw};
 use patchray_host::picture::encode;
+use patchray_host::picture::rows::Rows;
 use patchray_host::scene::error::OnInvalid;
 use patchray_host::scene::file;
 use patchray_host::settings::Settings;
@@ -29,8 +29,8 @@ fn sphere(background: [f64; 3], material: &str, more: &str) -> (Drawn, Vec<[u8; 
     let (tracers, _) = viewed.tracers().expect("it was just made ready");
     let (appearance, shadows) = (&scene.appearance, &NO_SHADOWS);
     let drawing =
-        Drawing { tracers: &tracers, view: &view, appearance, shadows, rows: 0..view.size[1], outcomes: false };
-    let drawn = draw(&drawing, &ProgressBar::hidden());
+        Drawing { tracers: &tracers, view: &view, appearance, shadows, rows: Rows::all(view.size[1]), outcomes: false };
+    let drawn = draw(&drawing, &Watch::default());
     assert!(drawn.tally.hits > u64::from(SIZE * SIZE) / 3, "{} hits", drawn.tally.hits);
     let mut png = Vec::new();
     drawn.picture.write_png(&mut png).expect("memory does not fail");

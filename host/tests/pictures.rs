@@ -4,9 +4,9 @@
 //! to change, they record it again.
 
 use image::RgbImage;
-use indicatif::ProgressBar;
-use patchray_host::cmd::render::{Drawing, draw};
+use patchray_host::drawing::{Drawing, Watch, draw};
 use patchray_host::picture::GAVE_UP;
+use patchray_host::picture::rows::Rows;
 use patchray_host::scene::error::OnInvalid;
 use patchray_host::scene::file;
 use patchray_host::scene::trace::Method;
@@ -60,9 +60,10 @@ fn rows_drawn_anew_are_the_recorded_ones() {
         let mut differ = 0;
         for row in (32..1024).step_by(64) {
             let (tracers, shadows) = (&tracers, &shadows);
-            let drawing = Drawing { tracers, view: &view, appearance, shadows, rows: row..row + 1, outcomes: false };
+            let drawing =
+                Drawing { tracers, view: &view, appearance, shadows, rows: Rows::from(row..row + 1), outcomes: false };
             let mut png = Vec::new();
-            draw(&drawing, &ProgressBar::hidden()).picture.write_png(&mut png).expect("memory does not fail");
+            draw(&drawing, &Watch::default()).picture.write_png(&mut png).expect("memory does not fail");
             let drawn = image::load_from_memory(&png).expect("what was written can be read").to_rgb8();
             assert_eq!(drawn.dimensions(), (1024, 1));
             for (drawn, recorded) in drawn.pixels().zip(recorded.rows().nth(row as usize).expect("a row")) {

@@ -1,8 +1,8 @@
 //! Shadows against closed forms: those of spheres, by rays and by maps, and of what lies close to a surface.
 
 use clap::ValueEnum;
-use indicatif::ProgressBar;
-use patchray_host::cmd::render::{Drawing, draw};
+use patchray_host::drawing::{Drawing, Watch, draw};
+use patchray_host::picture::rows::Rows;
 use patchray_host::scene::error::OnInvalid;
 use patchray_host::scene::file::{self, Scene};
 use patchray_host::scene::light::{MapOptions, Shadow};
@@ -47,10 +47,10 @@ fn drawn(scene: &Scene, settings: &Settings) -> (Vec<f64>, Vec<MapUsed>) {
         view: &view,
         appearance,
         shadows: &shadows,
-        rows: 0..view.size[1],
+        rows: Rows::all(view.size[1]),
         outcomes: false,
     };
-    let drawn = draw(&drawing, &ProgressBar::hidden());
+    let drawn = draw(&drawing, &Watch::default());
     let mut png = Vec::new();
     drawn.picture.write_png(&mut png).expect("memory does not fail");
     let picture = image::load_from_memory(&png).expect("a picture").to_rgb8();

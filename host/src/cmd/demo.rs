@@ -9,12 +9,13 @@ use clap::{Args, ValueEnum};
 use rayon::ThreadPool;
 use serde::Serialize;
 
-use super::render::{Drawing, Drawn, draw};
 use super::{Failure, StatsOutputs, check_outputs, pool, progress};
+use crate::drawing::{Drawing, Drawn, Watch, draw};
 use crate::judge::{Agreement, OracleStats, Truth, ask};
 use crate::oracle::Oracle;
 use crate::output::{Output, OutputError};
 use crate::picture::Picture;
+use crate::picture::rows::Rows;
 use crate::prepared::Tracers;
 use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
@@ -126,11 +127,18 @@ fn compare(
     let mut viewed = viewed.collect::<Result<Vec<_>, _>>()?;
     let tracers = viewed.iter_mut().map(Viewed::tracers).collect::<Result<Vec<_>, _>>()?;
     let bar = progress((PASSES * settings.len()) as u64 * u64::from(view.size[1]), "drawing", quiet);
+    let watch = Watch { bar, ..Watch::default() };
     let passes = (0..PASSES).map(|_| {
         let draw = |(tracers, _): &(Tracers, Used)| {
-            let drawing =
-                Drawing { tracers, view, appearance, shadows: &NO_SHADOWS, rows: 0..view.size[1], outcomes: true };
-            pool.install(|| draw(&drawing, &bar))
+            let drawing = Drawing {
+                tracers,
+                view,
+                appearance,
+                shadows: &NO_SHADOWS,
+                rows: Rows::all(view.size[1]),
+                outcomes: true,
+            };
+            pool.install(|| draw(&drawing, &watch))
         };
         tracers.iter().map(draw).collect::<Vec<Drawn>>()
     });
@@ -140,7 +148,7 @@ fn compare(
         }
         fastest
     });
-    bar.finish_and_clear();
+    watch.bar.finish_and_clear();
     let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());
     let mut runs = Vec::new();
     let mut picture = None;

@@ -1,9 +1,14 @@
 //! The verbs, and how each of them may end.
 
+pub mod aov;
 pub mod bake;
 pub mod demo;
+pub mod diff;
 pub mod info;
+pub mod interrupt;
 pub mod load;
+pub mod merge;
+pub mod preview;
 pub mod query;
 pub mod render;
 pub mod report;
@@ -11,11 +16,12 @@ pub mod stress;
 pub mod study;
 pub mod tables;
 
+use std::fmt;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanCount, ProgressBar, ProgressState, ProgressStyle};
 use miette::Diagnostic;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
@@ -23,6 +29,7 @@ use thiserror::Error;
 
 use crate::lower::LowerError;
 use crate::output::{Output, OutputError};
+use crate::picture::rows::Rows;
 use crate::scene::error::InputError;
 use crate::settings::Flags;
 use crate::stats::{Asked, Stats, to_json};
@@ -69,16 +76,36 @@ pub enum Failure {
         /// How many.
         missed: usize,
     },
+    /// The answer is no: pictures are not the same.
+    #[error("they are not the same: {how}")]
+    Differ {
+        /// In what.
+        how: String,
+    },
+    /// The answer is no: a picture is not whole.
+    #[error("rows {rows} are in none of the parts")]
+    #[diagnostic(help("draw them with --rows {rows}, and merge all parts again"))]
+    Missing {
+        /// The rows.
+        rows: Rows,
+    },
+    /// Somebody stopped it.
+    #[error("stopped: {kept}")]
+    Interrupted {
+        /// What is kept of the work.
+        kept: String,
+    },
     /// Something that should not happen.
     #[error("internal error: {0}")]
     Internal(String),
 }
 
 impl Failure {
-    /// The exit code: 1 the answer is no, 2 usage, 3 input refused, 4 capacity, 5 internal or I/O; 0 if whoever read the output went away.
+    /// The exit code: 1 the answer is no, 2 usage, 3 input refused, 4 capacity, 5 internal or I/O, 130 interrupted; 0 if whoever
+    /// read the output went away.
     pub fn code(&self) -> u8 {
         match self {
-            Failure::No { .. } => 1,
+            Failure::No { .. } | Failure::Differ { .. } | Failure::Missing { .. } => 1,
             Failure::Usage { .. } => 2,
             Failure::Input(_) | Failure::Refused { .. } => 3,
             Failure::Lower(LowerError::Surface { .. } | LowerError::Vanishes { .. } | LowerError::NoView { .. }) => 3,
@@ -86,6 +113,8 @@ impl Failure {
             Failure::Lower(_) => 4,
             Failure::Output(error) if error.is_broken_pipe() => 0,
             Failure::Output(_) | Failure::Internal(_) => 5,
+            // As shells report a process that Ctrl-C has ended.
+            Failure::Interrupted { .. } => 130,
         }
     }
 }
@@ -154,11 +183,30 @@ pub(crate) fn pool(threads: u32) -> Result<ThreadPool, Failure> {
 
 /// A progress bar of `length` steps; it shows only on a terminal, and not with `--quiet`.
 pub(crate) fn progress(length: u64, what: &'static str, quiet: bool) -> ProgressBar {
+    bar(length, what, quiet, ProgressStyle::with_template("{msg} [{wide_bar}] {percent} % {eta}"))
+}
+
+/// The same of rows of a picture, of so many rays each.
+pub(crate) fn progress_in_rows(length: u64, rays: u64, what: &'static str, quiet: bool) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} [{wide_bar}] {pos} of {len} rows, {rays} rays/s, {eta} left");
+    let rate = move |state: &ProgressState, text: &mut dyn fmt::Write| {
+        // What does not fit on the terminal is left out.
+        let _ = write!(text, "{}", HumanCount((state.per_sec() * rays as f64) as u64));
+    };
+    bar(length, what, quiet, style.map(|style| style.with_key("rays", rate)))
+}
+
+fn bar(
+    length: u64,
+    what: &'static str,
+    quiet: bool,
+    style: Result<ProgressStyle, indicatif::style::TemplateError>,
+) -> ProgressBar {
     if quiet || !io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(length).with_message(what);
-    if let Ok(style) = ProgressStyle::with_template("{msg} [{wide_bar}] {percent} % {eta}") {
+    if let Ok(style) = style {
         bar.set_style(style);
     }
     bar.enable_steady_tick(Duration::from_millis(200));

@@ -1,29 +1,23 @@
 //! `patchray render`: a scene file in, a picture out.
 
-use std::ops::Range;
+use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 use clap::Args;
-use indicatif::ProgressBar;
-use patchray::ray::RayError;
-use rayon::prelude::*;
 
+use super::aov::{self, Aov};
 use super::load::{self, Loaded};
-use super::{Failure, StatsOutputs, check_outputs, pool, progress, say, say_gave_up, summary};
-use crate::batch::Lanes;
-use crate::output::Output;
-use crate::picture::{self, GAVE_UP, Picture, encode};
-use crate::prepared::Tracers;
-use crate::scanline::{Lane, Outcome, Tally, rays_of};
-
-pub use crate::scanline::row;
-use crate::scene::appearance::Appearance;
-use crate::scene::camera::View;
+use super::{
+    Failure, StatsOutputs, check_outputs, interrupt, pool, preview, progress_in_rows, say, say_gave_up, summary,
+};
+use crate::drawing::{Drawing, Drawn, Watch, digest, draw};
+use crate::output::{self, Output};
+use crate::picture::part::Part;
+use crate::picture::rows::Rows;
 use crate::scene::sampling::Sampling;
 use crate::settings::{Flags, SizeFlag};
-use crate::shade::painter::{self, Colour, Painter};
 use crate::shade::shadows::Shadows;
-use crate::shade::spectrum::{Basis, Rgb, Sampled};
 use crate::stats::{MethodsByKind, RaysByKind, Stats};
 use crate::viewed::{Viewed, Wishes};
 
@@ -38,6 +32,19 @@ pub struct RenderArgs {
     /// The samples of a pixel: one, or four, uniform or jittered [default: one]
     #[arg(long, value_enum, help_heading = "Output")]
     pub samples: Option<Sampling>,
+    /// Draw these rows only, the top one being 0, into a part for `patchray merge`; what B has beyond the last row is left out
+    #[arg(long, value_name = "A..B", help_heading = "Output")]
+    pub rows: Option<Rows>,
+    /// Draw only the rows that an interrupted run of the same picture has not finished, all if there is none
+    #[arg(long, help_heading = "Output")]
+    pub resume: bool,
+    /// Write what one ray through the middle of each pixel met, and what that took: FILE.exr for all channels, NAME=FILE.png for
+    /// one as a heat map; may be given more than once
+    #[arg(long, value_name = "[NAME=]FILE", value_parser = aov::parse, conflicts_with = "rows", help_heading = "Output")]
+    pub aov: Vec<Aov>,
+    /// Show the picture in the terminal too
+    #[arg(long, help_heading = "Output")]
+    pub preview: bool,
     /// The common flags.
     #[command(flatten)]
     pub flags: Flags,
@@ -46,40 +53,62 @@ pub struct RenderArgs {
 /// Draws the scene.
 ///
 /// # Errors
-/// Bad input, too little memory, or an output that cannot be written; no output is left behind then.
+/// Bad input, too little memory, an output that cannot be written, or an interruption; no output is left behind then but, of an
+/// interrupted run, the part that is finished.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let RenderArgs { scene, size, samples, flags } = args;
+    let RenderArgs { scene, size, samples, rows, resume, aov, preview, flags } = args;
+    let usage = |message: &str, help: &str| Failure::Usage { message: message.to_owned(), help: help.to_owned() };
     let Some(output) = &flags.output else {
-        return Err(Failure::Usage {
-            message: "the picture has no name".to_owned(),
-            help: "add `-o OUT.png`, or `-o -` for standard output".to_owned(),
-        });
+        return Err(usage("the picture has no name", "add `-o OUT.png`, or `-o -` for standard output"));
     };
+    let unfinished = unfinished(output);
+    if *resume && unfinished.is_none() {
+        return Err(usage("an interrupted run to standard output leaves nothing", "name a file with -o"));
+    }
     check_outputs(Some(output), &[scene], flags)?;
+    let others = [Some(output), flags.stats.as_ref(), Some(scene)];
+    aov::check(aov, &others.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let loaded = load::scene(scene, flags)?;
     let Some((description, appearance)) = &loaded.scene else {
         return Err(Failure::Internal("a scene without a description".to_owned()));
     };
-    let mut png = Output::create(output)?;
-    let stats_outputs = StatsOutputs::create(flags)?;
     let settings = &loaded.settings;
     let size = size.size.unwrap_or(description.image.size);
     let view = description.camera.view(size).sampled(samples.unwrap_or(description.image.samples));
+    let all = Rows::all(size[1]);
+    let wanted = rows.as_ref().map_or(all.clone(), |rows| rows.within(&all));
+    if wanted.is_empty() {
+        return Err(usage(&format!("there are no such rows: the picture has {}", size[1]), "name rows within 0.."));
+    }
+    let mut part = Part::new(size, digest(&loaded.model, appearance, settings, &view));
+    if let Some(path) = unfinished.as_deref().filter(|path| *resume && path.exists()) {
+        take_over(&mut part, path)?;
+    }
+    let stop = interrupt::stop();
+    let mut png = Output::create(output)?;
+    let stats_outputs = StatsOutputs::create(flags)?;
     let mut viewed = Viewed::build(&loaded.model, settings, &view, Wishes::of(appearance))?;
     let (tracers, used) = viewed.tracers()?;
     let pool = pool(settings.threads)?;
     let (shadows, maps) = pool.install(|| Shadows::prepare(&loaded.model, appearance, settings, view.eye))?;
 
-    let bar = progress(u64::from(size[1]), "rendering", flags.quiet);
-    let rows = 0..view.size[1];
-    let drawing = Drawing { tracers: &tracers, view: &view, appearance, shadows: &shadows, rows, outcomes: false };
-    let drawn = pool.install(|| draw(&drawing, &bar));
-    bar.finish_and_clear();
+    let rows_left = wanted.without(&part.rows());
+    let rays = u64::from(size[0]) * u64::from(view.sampling.per_pixel());
+    let watch = Watch { bar: progress_in_rows(rows_left.len() as u64, rays, "rendering", flags.quiet), stop };
+    let drawing =
+        Drawing { tracers: &tracers, view: &view, appearance, shadows: &shadows, rows: rows_left, outcomes: false };
+    let drawn = pool.install(|| draw(&drawing, &watch));
+    watch.bar.finish_and_clear();
     refuse_pixels(&drawn, scene, &loaded)?;
+    part.add(&drawn.rows, &drawn.picture);
+    if stop.load(Ordering::Relaxed) {
+        return Err(keep(&part, unfinished.as_deref(), &wanted)?);
+    }
 
     let mut stats = Stats::new(scene.display().to_string(), settings, used, &drawn.tally);
     stats.size = Some(size);
     stats.samples = Some(view.sampling);
+    stats.rows = (drawn.rows != all).then(|| drawn.rows.to_string());
     stats.rays_by_kind = Some(RaysByKind { map: maps.iter().map(|map| map.rays).sum(), ..drawn.rays });
     let method = settings.method;
     stats.methods_by_kind = Some(MethodsByKind {
@@ -89,9 +118,23 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     });
     stats.shadow_maps = maps;
     stats.light_samples = Some(drawn.light_samples);
-    drawn.picture.write_png(&mut png).map_err(|reason| png.failed(reason))?;
+    if !aov.is_empty() {
+        pool.install(|| aov::write(aov, &loaded.model, settings, &view, flags.quiet))?;
+    }
+    let picture = part.whole();
+    let written = match (&picture, rows) {
+        (Some(picture), None) => picture.write_png(&mut png),
+        _ => part.write_png(&mut png),
+    };
+    written.map_err(|reason| png.failed(reason))?;
     png.finish()?;
     stats_outputs.finish(&stats)?;
+    if let Some(path) = unfinished.filter(|path| *resume && path.exists()) {
+        fs::remove_file(&path).map_err(|reason| output::OutputError::failed(&path, reason))?;
+    }
+    if *preview {
+        say(format_args!("{}", preview::of(&picture.unwrap_or(drawn.picture))));
+    }
     say_gave_up(&stats);
     if !flags.quiet {
         say(format_args!("{}", summary(&stats)));
@@ -99,138 +142,33 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A picture and what drawing it came to.
-#[derive(Clone, Debug)]
-pub struct Drawn {
-    /// The picture, of the rows that were wanted.
-    pub picture: Picture,
-    /// What became of each sample's ray, scan line by scan line from the top; nothing unless it was to be kept.
-    pub outcomes: Vec<Outcome>,
-    /// The first pixel with a ray that the kernel refused, if there is one: its place from the left and the top, and why.
-    pub refused: Option<([u32; 2], RayError)>,
-    /// The sums over the camera's rays.
-    pub tally: Tally,
-    /// All rays, by what they are for.
-    pub rays: RaysByKind,
-    /// In how many parts light was counted.
-    pub light_samples: u32,
+/// The file beside a picture in which an interrupted run leaves its rows; none beside standard output.
+fn unfinished(output: &Path) -> Option<PathBuf> {
+    (output != Path::new("-")).then(|| output.with_extension("unfinished.png"))
 }
 
-/// A row of pixels, and what drawing it came to.
-#[derive(Default)]
-struct Row {
-    pixels: Vec<picture::Rgb>,
-    outcomes: Vec<Outcome>,
-    tally: Tally,
-    rays: RaysByKind,
-    refused: Option<([u32; 2], RayError)>,
-}
-
-/// A picture to be drawn.
-#[derive(Clone)]
-pub struct Drawing<'d> {
-    /// What traces its rays.
-    pub tracers: &'d Tracers<'d>,
-    /// Its rays.
-    pub view: &'d View,
-    /// What they see looks so.
-    pub appearance: &'d Appearance,
-    /// The shadows of its lights.
-    pub shadows: &'d Shadows,
-    /// Its rows of pixels that are wanted, from the top, 0 being the first; within its height.
-    pub rows: Range<u32>,
-    /// Whether to keep what became of each ray, which takes some 80 bytes each: of a large picture, more than all else.
-    pub outcomes: bool,
-}
-
-/// Draws a view, a row of pixels a job, on rayon's current threads. The result does not depend on their number. Light is
-/// counted as red, green and blue, or as nine samples of its spectrum where something is of metal.
-pub fn draw(drawing: &Drawing, bar: &ProgressBar) -> Drawn {
-    let Drawing { view, appearance, shadows, .. } = drawing;
-    if appearance.has_metal() {
-        draw_in(Painter::new(Sampled::new(), view.eye, appearance, shadows), drawing, bar)
-    } else {
-        draw_in(Painter::new(Rgb, view.eye, appearance, shadows), drawing, bar)
-    }
-}
-
-fn draw_in<const N: usize>(
-    painter: Painter<'_, impl Basis<N>, N>,
-    Drawing { tracers, view, rows, outcomes: keep, .. }: &Drawing,
-    bar: &ProgressBar,
-) -> Drawn {
-    let lanes = Lanes::new(tracers.picture.as_ref());
-    let of_any = tracers.any.as_deref().map(Lanes::new);
-    let side = view.sampling.side();
-    let row = |py: u32, lane: &mut dyn Lane, mut any: Option<&mut dyn Lane>| {
-        let mut row = Row::default();
-        let mut lines = Vec::new();
-        for line in side * py..side * (py + 1) {
-            let samples = view.scan_line(line);
-            let rays = rays_of(view, line, &samples);
-            let mut outcomes = Vec::with_capacity(rays.len());
-            lane.trace_line(&samples, &rays, &mut outcomes, &mut row.tally);
-            let shadow = any.as_mut().map(|lane| &mut **lane as &mut dyn Lane);
-            let painted = painter.paint(painter::Lanes { mirrored: lane, shadow }, &rays, &outcomes);
-            lines.push(painted.colours);
-            row.rays.mirrored += painted.mirrored;
-            row.rays.shadow += painted.shadow;
-            let refused = outcomes.iter().enumerate().find_map(|(sample, outcome)| match outcome {
-                Outcome::Refused(error) => Some(([sample as u32 / side, py], *error)),
-                _ => None,
-            });
-            row.refused = row.refused.or(refused);
-            if *keep {
-                row.outcomes.extend(outcomes);
-            }
+/// Keeps the rows that an interrupted run has finished, and says so.
+fn keep(part: &Part, unfinished: Option<&Path>, wanted: &Rows) -> Result<Failure, Failure> {
+    let finished = part.rows().len();
+    let kept = match unfinished {
+        Some(path) if finished > 0 => {
+            output::write(path, |png| part.write_png(png))?;
+            let (path, wanted) = (path.display(), wanted.len());
+            format!("{finished} of {wanted} rows are kept in `{path}`; --resume goes on with the others")
         }
-        bar.inc(1);
-        Row { pixels: pixels(&lines), ..row }
+        _ => "no rows are kept".to_owned(),
     };
-    let drawn_rows: Vec<Row> = rows
-        .clone()
-        .into_par_iter()
-        .map(|py| {
-            lanes.with(|lane| match &of_any {
-                Some(of_any) => of_any.with(|any| row(py, lane, Some(any))),
-                None => row(py, lane, None),
-            })
-        })
-        .collect();
-    let mut drawn = Drawn {
-        picture: Picture::new([view.size[0], rows.len() as u32]),
-        outcomes: Vec::new(),
-        tally: Tally::default(),
-        rays: RaysByKind::default(),
-        refused: None,
-        light_samples: N as u32,
-    };
-    for Row { pixels, outcomes, tally, rays, refused } in drawn_rows {
-        drawn.picture.push_row(&pixels);
-        drawn.outcomes.extend(outcomes);
-        drawn.tally.add(&tally);
-        drawn.rays.mirrored += rays.mirrored;
-        drawn.rays.shadow += rays.shadow;
-        drawn.refused = drawn.refused.or(refused);
-    }
-    drawn.rays.camera = drawn.tally.rays;
-    drawn
+    Ok(Failure::Interrupted { kept })
 }
 
-/// The pixels of a row, from the colours of its samples in one or two scan lines: their mean, in linear colour. A pixel with
-/// a ray that was given up shows that.
-fn pixels(lines: &[Vec<Colour>]) -> Vec<picture::Rgb> {
-    let side = lines.len();
-    let samples = (side * side) as f64;
-    let width = lines.first().map_or(0, Vec::len) / side.max(1);
-    let pixel = |px: usize| {
-        let samples_of = lines.iter().flat_map(|line| &line[side * px..side * (px + 1)]);
-        let sum = samples_of
-            .copied()
-            .try_fold([0.0; 3], |sum, colour| colour.map(|colour: [f64; 3]| [0, 1, 2].map(|k| sum[k] + colour[k])));
-        sum.map_or(GAVE_UP, |sum| encode(sum.map(|part| part / samples)))
-    };
-    (0..width).map(pixel).collect()
+/// Takes over what an interrupted run has left.
+fn take_over(part: &mut Part, path: &Path) -> Result<(), Failure> {
+    let left = Part::read(path).and_then(|left| part.join(left));
+    left.map_err(|reason| Failure::Refused {
+        file: path.display().to_string(),
+        reason: reason.to_string(),
+        help: "draw the same picture as the interrupted run, or remove that file, or leave --resume out".to_owned(),
+    })
 }
 
 /// Refuses a view with a pixel whose ray the kernel refuses.

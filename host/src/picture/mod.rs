@@ -1,9 +1,12 @@
 //! Pictures: rows of RGB, 8 bits a channel, written as PNG.
 
+pub mod part;
+pub mod rows;
+
 use std::io::{self, Write};
 
 use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use image::{ExtendedColorType, ImageEncoder, RgbImage};
 
 /// A colour of 8 bits a channel, in sRGB.
 pub type Rgb = [u8; 3];
@@ -29,9 +32,20 @@ impl Picture {
         self.bytes.extend(row.iter().flatten());
     }
 
+    /// Its rows so far, from the top.
+    pub fn rows(&self) -> impl Iterator<Item = &[Rgb]> {
+        self.bytes.as_chunks::<3>().0.chunks(self.size[0].max(1) as usize)
+    }
+
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// The same as the library of pictures has it; of no pixels, if its rows do not fill it.
+    pub fn to_image(&self) -> RgbImage {
+        let [width, height] = self.size;
+        RgbImage::from_raw(width, height, self.bytes.clone()).unwrap_or_default()
     }
 
     /// Writes the picture as PNG. The same picture gives the same bytes.

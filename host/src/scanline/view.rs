@@ -13,7 +13,7 @@ use patchray::scalar::Scalar;
 use patchray::scene::Scene;
 use patchray::view::View;
 
-use super::{BLOCK, Each, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};
+use super::{BLOCK, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};
 use crate::lower::ORDER;
 use crate::method::in_view::ViewMethod;
 use crate::scene::camera;
@@ -191,13 +191,13 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
             if let Some(line) = &mut of_line {
                 found.extend(ready.iter().map(|&place| {
                     number += step;
-                    let before = each.is_some().then(|| Each::of(&work));
+                    let before = each.is_some().then_some(work);
                     let answer = view.ray(place, &ahead).map(|ray| {
                         let answer = M::closest(view, line, &mut memory, number, &ray, limits, scratch, &mut work);
                         answer.map_err(Into::into)
                     });
                     if let (Some(each), Some(before)) = (&mut each, before) {
-                        each.push(Each::of(&work).since(before));
+                        each.push(work.since(&before));
                     }
                     Some(answer)
                 }));

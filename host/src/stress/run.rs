@@ -11,7 +11,7 @@ use super::truth;
 use crate::lower::{LowerError, Stages};
 use crate::measure::trace_picture;
 use crate::prepared::Prepared;
-use crate::scanline::{Each, Outcome, Tally};
+use crate::scanline::{Outcome, Tally, steps};
 use crate::scene::rays::RayLine;
 use crate::scene::shapes::Random;
 use crate::scene::trace::{Acceptance, Method, Precision};
@@ -172,8 +172,8 @@ struct Answers {
 }
 
 /// The steps of each ray.
-fn steps_of(each: &[Each]) -> Vec<u64> {
-    each.iter().map(|each| u64::from(each.steps)).collect()
+fn steps_of(each: &[Work]) -> Vec<u64> {
+    each.iter().map(|each| u64::from(steps(each))).collect()
 }
 
 fn trace(case: &Case, rays: &[RayLine], settings: &Settings) -> Result<Answers, LowerError> {

@@ -10,7 +10,7 @@ use super::truth::RayTruth;
 use crate::judge::{Truth, allowance};
 use crate::measure::{found_twice, trace_picture};
 use crate::report::times::{Times, quantile};
-use crate::scanline::{Lane, Outcome, Tally, row};
+use crate::scanline::{Lane, Outcome, Tally, row, steps};
 use crate::scene::trace::{Method, Precision};
 use crate::settings::Settings;
 use crate::stats::Used;
@@ -216,7 +216,7 @@ impl Study<'_> {
             }
         });
         let (worst, t, residual) = (worst.collect(), Spread::of(&errors), Spread::of(&residuals));
-        let map = Map { size: picture.size, pixels, steps: each.iter().map(|each| effort(each.steps)).collect() };
+        let map = Map { size: picture.size, pixels, steps: each.iter().map(|each| effort(steps(each))).collect() };
         Answers { tally, counts, errors: Errors { t, residual }, worst, map }
     }
 }

@@ -1,6 +1,6 @@
 //! `query --all` and `query --any`: every hit of a ray, or whichever is found first.
 
-use patchray_host::cmd::render::row;
+use patchray_host::scanline::row;
 use patchray_host::scene::model::Model;
 use patchray_host::scene::{bpt, shapes, teapot};
 

@@ -13,6 +13,8 @@ mod all_and_any;
 mod b_splines;
 mod bad_input;
 mod bake;
+mod channels;
+mod parts;
 mod scenes;
 mod study;
 mod tables;

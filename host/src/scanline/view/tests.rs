@@ -1,6 +1,6 @@
 use clap::ValueEnum;
 
-use crate::cmd::render::row;
+use crate::scanline::row;
 use crate::scanline::{Outcome, Tally};
 use crate::scene::camera::{Camera, View};
 use crate::scene::model::Model;
