@@ -9,7 +9,7 @@
 //! method is a departure: it stands for the last clips, and refuses the phantom hits that Campagna, Slusallek and Seidel
 //! (1997) found, where a region shrinks to a point that the ray passes by.
 
-use crate::bernstein::{BasisView, Full};
+use crate::bernstein::{BasisView, Direction, Full};
 use crate::clip::{Clip, chords, clip, corners};
 use crate::contract::{Contraction, Single, contract, is_provable, single};
 use crate::graze::{Across, across, allowed, first_met, on_line, polished};
@@ -21,6 +21,7 @@ use crate::point::Point;
 use crate::region::{Order, Region};
 use crate::roots::Seen;
 use crate::scalar::Scalar;
+use crate::story::Event;
 use crate::surface::Surface;
 use heapless::vec::VecView;
 
@@ -75,7 +76,9 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
         let ClipRoom { whole, basis, .. } = &mut **room;
         spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
         let whole = whole.get(..net.points().len()).ok_or(Limit::Scratch)?;
-        Local::at(at, net.degrees(), whole, basis)
+        let local = Local::at(at, net.degrees(), whole, basis)?;
+        P::Scalar::tell(|| local.told());
+        Ok(local)
     }
 
     /// All points where the ray's line meets a region of the surface, to `found`. The net has to be projected.
@@ -181,7 +184,12 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                 // Ends: each turn takes one of the regions that wait.
                 loop {
                     match order.pop(pending) {
-                        Some(region) => part.become_region(whole, region),
+                        Some(region) => {
+                            P::Scalar::tell(|| Event::Region {
+                                sides: region.sides.map(|side| side.map(P::Scalar::to_f64)),
+                            });
+                            part.become_region(whole, region);
+                        }
                         None => return Ok(None),
                     }
                     // Most halves of a small region, which only a fold keeps from being proved, lie apart from the ray across
@@ -197,7 +205,9 @@ impl<P: Point> Roots<'_, '_, '_, P> {
             let direction = part.region.next;
             part.region.next = direction.other();
             let noise = part.noise(tolerance);
-            let mut step = match clip(part.degrees, part.net, direction, &noise) {
+            let clipped = clip(part.degrees, part.net, direction, &noise);
+            P::Scalar::tell(|| told(&part.region, direction, &clipped));
+            let mut step = match clipped {
                 Clip::Nothing => Step::Done(None),
                 Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
                     part.narrow(direction, [from, to]);
@@ -245,6 +255,7 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                 Step::Settled => settled = true,
                 Step::Bisect([first, second]) => {
                     spend(&mut work.bisections, limits.bisections, Limit::Bisections)?;
+                    P::Scalar::tell(|| Event::Bisection);
                     work.bisection_cases += u32::from(!self.bisected);
                     self.bisected = true;
                     order.push(second, pending, limits.pending_domains)?;
@@ -287,6 +298,16 @@ fn may_be_single<P: Point>(surface: &Surface<'_, P>, part: &Part<'_, P::Flat>) -
     // The way that an error makes in u, by the inverse of the Jacobian, is that times a width; and must be less than half of either.
     let way = along_u * u + along_v * v;
     way <= determinant * P::Scalar::TWO * u.lesser(v)
+}
+
+/// That a region was clipped.
+fn told<S: Scalar>(region: &Region<S>, direction: Direction, clipped: &Clip<S>) -> Event {
+    let left = match clipped {
+        Clip::Nothing => None,
+        Clip::Part(part) => Some(part.map(S::to_f64)),
+        Clip::Settled => Some([0.0, 1.0]),
+    };
+    Event::Clip { sides: region.sides.map(|side| side.map(S::to_f64)), in_v: direction == Direction::V, left }
 }
 
 /// What a clip leads to.

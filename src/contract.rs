@@ -66,6 +66,7 @@ pub(crate) fn contract<P: Point>(
         let [u, v] = region.middle();
         spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
         let local = Local::at([u, v], surface.net.degrees(), whole, basis)?;
+        P::Scalar::tell(|| local.told());
         let [along_u, along_v] = local.inverse_bounds(strays);
         // A NaN or a singular Jacobian proves nothing; nor does one that may be all rounding, as of a flat net seen edge on.
         let proved = !local.may_be_singular() && along_u + along_u < halves[0] && along_v + along_v < halves[1];
@@ -87,6 +88,7 @@ pub(crate) fn contract<P: Point>(
                 // far along the surface: one more from the border says on which side of it the root lies.
                 spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
                 local = Local::at(held, surface.net.degrees(), whole, basis)?;
+                P::Scalar::tell(|| local.told());
                 let Some([du, dv]) = local.step() else {
                     return Ok(Contraction::Open);
                 };

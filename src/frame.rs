@@ -194,7 +194,7 @@ impl<S: Scalar> Frame<S> {
     }
 
     /// Caller's units per unit of the frame.
-    pub(crate) fn unscale(&self) -> S {
+    pub fn unscale(&self) -> S {
         self.unscale
     }
 

@@ -67,7 +67,10 @@
 /// ```
 pub const LAYOUT: u32 = 1;
 
+pub mod story;
+
 pub mod scalar;
+pub mod told;
 
 pub mod ray;
 

@@ -15,6 +15,7 @@ use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
 use crate::ray::Hit;
 use crate::scalar::Scalar;
+use crate::story::Event;
 use crate::surface::Surface;
 use crate::sweep::Along;
 use crate::view::{Facing, RUN, Sight, View, ViewRay};
@@ -198,6 +199,7 @@ impl<'m, S: Scalar> Line<'m, S> {
     /// Brings the list to a ray's place in the line.
     #[inline(always)]
     fn go_to(&mut self, ray: &ViewRay<S>, most: u32, work: &mut Work) -> Result<(), Limit> {
+        S::tell(|| Event::Ray);
         let Window { x: [left, right], y: [low, high] } = self.window;
         let [x, y] = ray.place;
         if !(left <= x && x <= right && low <= y && y <= high) {
@@ -353,6 +355,7 @@ impl<'l, S: Scalar> InLine<'l, S> {
                 return Err(Limit::Slot);
             };
             let within = DepthRange { min: range.min, max: farthest };
+            S::tell(|| Event::Surface(number));
             if let Some(root) = search(&surface, planes, within, in_line, limits, work)? {
                 // As in `Scene::closest`.
                 let closer = |(old, other): (Root<S>, u32)| {
@@ -435,7 +438,9 @@ impl<'l, S: Scalar> InLine<'l, S> {
                 continue;
             }
             spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
-            if let Some(crossing) = patch.bounds().crossing(planes) {
+            let crossing = patch.bounds().crossing(planes);
+            S::tell(|| patch.told(crossing.is_some()));
+            if let Some(crossing) = crossing {
                 farthest = visit(span.surface, patch, &crossing, work)?;
             }
         }

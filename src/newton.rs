@@ -13,6 +13,7 @@ use crate::planes::{Planes, project_net};
 use crate::point::{Flat, Point};
 use crate::ray::Hit;
 use crate::scalar::Scalar;
+use crate::story::Event;
 use crate::surface::{Net, Surface};
 use heapless::vec::VecView;
 
@@ -31,7 +32,13 @@ pub struct Root<S> {
     pub grazing: bool,
 }
 
-impl<S> Root<S> {
+impl<S: Scalar> Root<S> {
+    /// That it was found.
+    fn told(&self) -> Event {
+        let Root { u, v, depth, grazing } = *self;
+        Event::Root { at: [u, v].map(S::to_f64), depth: depth.to_f64(), grazing }
+    }
+
     /// The root as a hit, at the ray's parameter `t`, of a surface.
     #[inline(always)]
     pub(crate) fn hit(self, surface: u32, t: S) -> Hit<S> {
@@ -74,6 +81,11 @@ impl<S: Scalar> Local<S> {
     #[inline(always)]
     pub(crate) fn distance(&self) -> S {
         self.residual() / self.weight
+    }
+
+    /// That it was looked at.
+    pub(crate) fn told(&self) -> Event {
+        Event::Step { at: self.at.map(S::to_f64), residual: self.distance().to_f64() }
     }
 
     /// |f| + |g|, times the weight.
@@ -242,7 +254,9 @@ impl<S: Scalar> Place<S> {
         }
         let depth = planes.depth_on(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
         let [u, v] = self.at;
-        Ok(Root { u, v, depth, grazing: false })
+        let root = Root { u, v, depth, grazing: false };
+        S::tell(|| root.told());
+        Ok(root)
     }
 
     /// The same where the ray may be tangent, or the surface is of very uneven speed.
@@ -271,7 +285,9 @@ impl<S: Scalar> Place<S> {
             }
         }
         let [u, v] = at;
-        Ok(Root { u, v, depth, grazing })
+        let root = Root { u, v, depth, grazing };
+        S::tell(|| root.told());
+        Ok(root)
     }
 
     /// The place at (u, v) of a projected net.
@@ -381,7 +397,10 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         match self.iterate(start, work)? {
             Some(place) => self.root(&place).map(Some),
-            None => Ok(None),
+            None => {
+                P::Scalar::tell(|| Event::Stuck);
+                Ok(None)
+            }
         }
     }
 
@@ -394,7 +413,10 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     ) -> Result<Option<Followed<P::Scalar>>, Limit> {
         match self.iterate(start, work)? {
             Some(place) => Ok(Some((self.root(&place)?, place.local))),
-            None => Ok(None),
+            None => {
+                P::Scalar::tell(|| Event::Stuck);
+                Ok(None)
+            }
         }
     }
 
@@ -410,7 +432,9 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         spend(&mut work.newton_steps, self.limits.newton_steps, Limit::NewtonSteps)?;
         self.project()?;
         let flat = self.flat.get(..self.surface.net.points().len()).ok_or(Limit::Scratch)?;
-        Local::at(at, self.surface.net.degrees(), flat, self.basis)
+        let local = Local::at(at, self.surface.net.degrees(), flat, self.basis)?;
+        P::Scalar::tell(|| local.told());
+        Ok(local)
     }
 
     /// Sees to it that `flat` holds the projected net.
@@ -427,6 +451,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
     #[inline(always)]
     pub(crate) fn turn_to(&mut self, surface: &Surface<'m, P>) {
         if self.surface.number != surface.number {
+            P::Scalar::tell(|| Event::Surface(surface.number));
             (self.surface, self.projected, self.decided) = (*surface, false, Decided::Nothing);
         }
     }
@@ -440,6 +465,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         let flat = self.flat.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
         work.newton_starts += 1;
         let [mut u, mut v] = start.map(|t| t.clamped(zero, one));
+        P::Scalar::tell(|| Event::Start([u.to_f64(), v.to_f64()]));
         let (mut from_u, mut from_v) = (u, v);
         let (mut step_u, mut step_v) = (zero, zero);
         let mut last = P::Scalar::INFINITY;
@@ -450,6 +476,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         for _ in 0..limits.newton_iterations {
             spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
             let local = Local::at([u, v], surface.net.degrees(), flat, self.basis)?;
+            P::Scalar::tell(|| local.told());
             let residual = local.residual();
             // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
             if residual <= noise::<P::Scalar>() * local.weight {

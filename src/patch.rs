@@ -13,6 +13,7 @@ use crate::domain::Domain;
 use crate::frame::Aabb;
 use crate::planes::{CENTRE, Columns, DepthRange, Planes};
 use crate::scalar::{Scalar, Vector3};
+use crate::story::Event;
 
 /// A box with skew sides: centre ± e1 ± e2 ± e3, in the frame; e1, e2, e3 are along v1, v2 and v1 × v2.
 ///
@@ -276,6 +277,11 @@ impl<S: Scalar> Patch<S> {
     /// The parameter domain.
     pub fn domain(&self) -> Domain {
         self.domain
+    }
+
+    /// That it was tested.
+    pub(crate) fn told(&self, met: bool) -> Event {
+        Event::Patch { sides: self.domain.bounds(), met }
     }
 
     /// Whether the ray may meet the patch more than once, by eq. (1) with this factor.

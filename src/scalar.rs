@@ -1,19 +1,20 @@
-//! The two number types of the kernel, `f32` and `f64`, behind one sealed trait.
+//! The number types of the kernel behind one sealed trait: `f32` and `f64`, and either of them in [`Told`](crate::told::Told).
 //!
 //! Everything above this file is written once, for any [`Scalar`]. The operations are those whose results are the same
 //! bits on every target: + − × ÷, square root, comparison, and scaling by a power of two. This is the only file that
 //! names `libm` or `glam`'s types.
 
+use crate::story::Event;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-mod sealed {
+pub(crate) mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}
     impl Sealed for f64 {}
 }
 
-/// A floating-point type that the kernel computes in: `f32` or `f64`.
+/// A floating-point type that the kernel computes in: `f32`, `f64`, or either of them in [`Told`](crate::told::Told).
 pub trait Scalar:
     sealed::Sealed
     + Copy
@@ -78,6 +79,10 @@ pub trait Scalar:
     fn times_power_of_two(self, exponent: i32) -> Self;
     /// The k with 2^(k−1) ≤ |self| < 2^k, for finite numbers other than 0.
     fn binary_exponent(self) -> i32;
+
+    /// Takes notice of what a search does; see [`story`](crate::story). Does nothing, and does not even ask what.
+    #[inline(always)]
+    fn tell(_event: impl FnOnce() -> Event) {}
 
     /// The smaller one; `self` when they compare equal or `other` is NaN. (`f64::min` may give either zero of −0 and +0.)
     #[inline(always)]

@@ -13,6 +13,7 @@ use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray, RayError};
 use crate::scalar::Scalar;
+use crate::story::Event;
 use crate::surface::{Net, NetError, Surface};
 
 /// A surface as a slot of lent memory.
@@ -359,6 +360,7 @@ impl<'m, P: Point> Scene<'m, P> {
         ) -> Result<P::Scalar, Limit>,
     ) -> Result<(), Limit> {
         *work = Work::default();
+        P::Scalar::tell(|| Event::Ray);
         let Some((planes, range)) = self.header.frame.enter(ray, interval) else {
             return Ok(());
         };
@@ -370,6 +372,7 @@ impl<'m, P: Point> Scene<'m, P> {
         while let Some(voxel) = walk.advance() {
             let mut voxel = voxel.map_err(|()| Limit::Slot)?;
             spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
+            P::Scalar::tell(|| Event::SceneVoxel);
             while let Some(number) = voxel.next_fresh() {
                 let slot = self.surfaces.get(number).ok_or(Limit::Slot)?;
                 spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
@@ -381,6 +384,7 @@ impl<'m, P: Point> Scene<'m, P> {
                     continue;
                 }
                 let surface = self.surface(number).ok_or(Limit::Slot)?;
+                P::Scalar::tell(|| Event::Surface(surface.number));
                 farthest = farthest.lesser(search(&surface, &planes, within, work)?);
             }
             if voxel.exit >= farthest {

@@ -8,6 +8,7 @@ use crate::limits::{Limit, Limits, Work, spend};
 use crate::patch::{Crossing, Patch};
 use crate::planes::{DepthRange, Planes};
 use crate::scalar::Scalar;
+use crate::story::Event;
 use crate::walk::Walk;
 
 /// The patches of one surface, and what leads to those along a ray.
@@ -101,10 +102,13 @@ pub fn sweep<S: Scalar>(
     while let Some(voxel) = walk.advance() {
         let mut voxel = voxel.map_err(|()| Limit::Slot)?;
         spend(&mut work.voxels_visited, limits.voxels, Limit::Voxels)?;
+        S::tell(|| Event::Voxel);
         while let Some(item) = voxel.next_fresh() {
             let patch = patches.get(item).ok_or(Limit::Slot)?;
             spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
-            if let Some(crossing) = patch.bounds().crossing(planes) {
+            let crossing = patch.bounds().crossing(planes);
+            S::tell(|| patch.told(crossing.is_some()));
+            if let Some(crossing) = crossing {
                 enough = visit(patch, &crossing, work)?;
             }
         }

@@ -8,6 +8,7 @@ use crate::patch::Patches;
 use crate::patch::{Met, Parallelepiped, Patch};
 use crate::planes::Planes;
 use crate::scalar::Scalar;
+use crate::story::Event;
 
 /// The binary trees of a scene, in pre-order: a view of lent memory.
 ///
@@ -92,7 +93,9 @@ impl<'m, S: Scalar> Descent<'m, S> {
                 }
                 patches_left -= 1;
                 leaf += 1;
-                if let Some(crossing) = patch.bounds().crossing(planes) {
+                let crossing = patch.bounds().crossing(planes);
+                S::tell(|| patch.told(crossing.is_some()));
+                if let Some(crossing) = crossing {
                     break Ok(Some((patch, crossing)));
                 }
             } else {
@@ -104,7 +107,9 @@ impl<'m, S: Scalar> Descent<'m, S> {
                 }
                 nodes_left -= 1;
                 inner += 1;
-                if !node.met(planes) {
+                let met = node.met(planes);
+                S::tell(|| Event::Node { met });
+                if !met {
                     // A subtree of k patches has k − 1 inner nodes, this one among them.
                     inner = inner.saturating_add(below as usize - 2);
                     leaf = leaf.saturating_add(below as usize);

@@ -9,6 +9,7 @@ use crate::newton::Root;
 use crate::patch::{Crossing, Patch};
 use crate::planes::{DepthRange, Planes};
 use crate::scalar::Scalar;
+use crate::story::Event;
 use crate::sweep::Along;
 
 /// A patch whose parallelepiped the testing ray meets.
@@ -34,10 +35,16 @@ pub fn testing_ray<S: Scalar>(
     mut visit: impl FnMut(&Listed<'_, S>, &mut Work) -> Result<bool, Limit>,
 ) -> Result<(), Limit> {
     let range = DepthRange { min: nearest, max: root.depth };
+    S::tell(|| Event::Testing);
     along.back(planes, &range, limits, work, |patch, crossing, work| {
         let owner = patch.domain().holds(root.u, root.v);
         // The owner's box holds the point; another's counts if it reaches between point and origin.
-        if owner || reaches(crossing, &range) { visit(&Listed { patch, crossing, owner }, work) } else { Ok(true) }
+        if owner || reaches(crossing, &range) {
+            S::tell(|| Event::Listed { owner });
+            visit(&Listed { patch, crossing, owner }, work)
+        } else {
+            Ok(true)
+        }
     })
 }
 

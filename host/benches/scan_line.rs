@@ -6,7 +6,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use patchray::limits::Limits;
 use patchray::point::{Plain, Weighted};
 use patchray_host::lower::{FromFile, Lowered, Preparation, Stages};
-use patchray_host::method::{Bare, Clipping, ClippingCoherent, Newton, NewtonCoherent, Views};
+use patchray_host::method::{Clipping, ClippingCoherent, Newton, NewtonCoherent, Views};
 use patchray_host::scanline::{MethodTracer, Tally, Tracer};
 use patchray_host::scene::model::Model;
 use patchray_host::scene::rays::RayLine;
@@ -46,8 +46,8 @@ fn trace(criterion: &mut Criterion, name: &str, tracer: &dyn Tracer, rays: &[Ray
 fn all_methods<P: FromFile>(criterion: &mut Criterion, name: &str, model: &Model) {
     let lowered = Lowered::<P>::build(model, Stages::ALL, &Preparation::default()).expect("the model is valid");
     let (views, limits) = (Views::of(&lowered), Limits::default());
-    let newton = MethodTracer::<Newton<Bare>, _>::new(views, limits);
-    let newton_coherent = MethodTracer::<NewtonCoherent<Bare>, _>::new(views, limits);
+    let newton = MethodTracer::<Newton, _>::new(views, limits);
+    let newton_coherent = MethodTracer::<NewtonCoherent, _>::new(views, limits);
     let clipping = MethodTracer::<Clipping, _>::new(views, limits);
     let clipping_coherent = MethodTracer::<ClippingCoherent, _>::new(views, limits);
     let tracers: [(&str, &dyn Tracer); 4] = [

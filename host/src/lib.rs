@@ -4,6 +4,7 @@ pub mod batch;
 pub mod channels;
 pub mod cmd;
 pub mod drawing;
+pub mod explain;
 pub mod judge;
 pub mod lower;
 pub mod measure;

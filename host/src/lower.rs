@@ -100,7 +100,7 @@ impl Stages {
     }
 
     /// Whether there are patches: trees and grids are made of them.
-    fn has_patches(self) -> bool {
+    pub fn has_patches(self) -> bool {
         self.patches || self.tree || self.grids
     }
 }

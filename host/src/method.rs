@@ -5,7 +5,6 @@ use std::marker::PhantomData;
 
 use heapless::Vec as List;
 use patchray::clipper::ClipRoom;
-use patchray::fallback::{Fallback, NoFallback};
 use patchray::grid::Grids;
 use patchray::limits::{GaveUp, Limit, Limits, Work};
 use patchray::method::{
@@ -158,51 +157,21 @@ pub trait Complete<P: Point>: Method<P> {
 
 /// The closest hit by [`patchray::method::newton`].
 #[derive(Clone, Copy, Debug)]
-pub struct Newton<R>(PhantomData<R>);
+pub struct Newton;
 
-/// What Newton's methods have per ray, and fall back on where they prove too little: a choice by type, so that what nothing is to
-/// prove pays for nothing.
-pub trait Room<P: Point>: Send + Sync {
-    /// What one thread needs.
-    type Scratch: Default + Send;
-    /// What it falls back on.
-    type Fallback<'s>: Fallback<P>;
+/// What Newton's methods need per ray: their own scratch, and that of Bézier clipping, on which they fall back under
+/// [`Acceptance::Proved`](patchray::limits::Acceptance::Proved).
+pub type NewtonScratch<P> = (Scratch<P, ORDER, NET>, ClipScratch<P, ORDER, NET, PENDING>);
 
-    /// The view of it that the methods take.
-    fn view(scratch: &mut Self::Scratch) -> ScratchView<'_, P, Self::Fallback<'_>>;
-}
-
-/// No fallback, for [`Acceptance::Paper`](patchray::limits::Acceptance::Paper).
-#[derive(Clone, Copy, Debug)]
-pub struct Bare;
-
-/// Bézier clipping, for [`Acceptance::Proved`](patchray::limits::Acceptance::Proved).
-#[derive(Clone, Copy, Debug)]
-pub struct Proving;
-
-impl<P: Point> Room<P> for Bare {
-    type Scratch = Scratch<P, ORDER, NET>;
-    type Fallback<'s> = NoFallback;
-
-    #[inline]
-    fn view(scratch: &mut Self::Scratch) -> ScratchView<'_, P> {
-        scratch.view()
-    }
-}
-
-impl<P: Point> Room<P> for Proving {
-    type Scratch = (Scratch<P, ORDER, NET>, ClipScratch<P, ORDER, NET, PENDING>);
-    type Fallback<'s> = ClipRoom<'s, P>;
-
-    #[inline]
-    fn view((newton, clips): &mut Self::Scratch) -> ScratchView<'_, P, ClipRoom<'_, P>> {
-        newton.view_with(clips.view())
-    }
+/// The view of it that the methods take.
+#[inline]
+pub(crate) fn newton_room<P: Point>((newton, clips): &mut NewtonScratch<P>) -> ScratchView<'_, P, ClipRoom<'_, P>> {
+    newton.view_with(clips.view())
 }
 
 /// The closest hit by [`patchray::method::newton_coherent`].
 #[derive(Clone, Copy, Debug)]
-pub struct NewtonCoherent<R>(PhantomData<R>);
+pub struct NewtonCoherent;
 
 /// The closest hit by [`patchray::method::clipping`].
 #[derive(Clone, Copy, Debug)]
@@ -220,9 +189,9 @@ pub struct AllHits<M>(PhantomData<M>);
 #[derive(Clone, Copy, Debug)]
 pub struct AnyHit<M>(PhantomData<M>);
 
-impl<P: Point, R: Room<P>> Method<P> for Newton<R> {
+impl<P: Point> Method<P> for Newton {
     const COHERENT: bool = false;
-    type Scratch = R::Scratch;
+    type Scratch = NewtonScratch<P>;
     type Hits = Hit<P::Scalar>;
 
     #[inline]
@@ -233,11 +202,11 @@ impl<P: Point, R: Room<P>> Method<P> for Newton<R> {
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Answer<Self::Hits> {
-        Ok(newton::closest(scene, patches, tree, ray, interval, limits, &mut R::view(scratch), work)?)
+        Ok(newton::closest(scene, patches, tree, ray, interval, limits, &mut newton_room(scratch), work)?)
     }
 }
 
-impl<P: Point, R: Room<P>> Complete<P> for Newton<R> {
+impl<P: Point> Complete<P> for Newton {
     #[inline]
     fn all_hits(
         Views { scene, patches, tree, .. }: &Views<'_, P>,
@@ -246,7 +215,7 @@ impl<P: Point, R: Room<P>> Complete<P> for Newton<R> {
         hits: &mut List<Hit<P::Scalar>, HITS>,
         work: &mut Work,
     ) -> Result<(), GaveUp<P::Scalar>> {
-        newton::all_hits(scene, patches, tree, ray, interval, limits, &mut R::view(scratch), hits, work)
+        newton::all_hits(scene, patches, tree, ray, interval, limits, &mut newton_room(scratch), hits, work)
     }
 
     #[inline]
@@ -256,13 +225,13 @@ impl<P: Point, R: Room<P>> Complete<P> for Newton<R> {
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-        newton::any_hit(scene, patches, tree, ray, interval, limits, &mut R::view(scratch), work)
+        newton::any_hit(scene, patches, tree, ray, interval, limits, &mut newton_room(scratch), work)
     }
 }
 
-impl<P: Point, R: Room<P>> Method<P> for NewtonCoherent<R> {
+impl<P: Point> Method<P> for NewtonCoherent {
     const COHERENT: bool = true;
-    type Scratch = R::Scratch;
+    type Scratch = NewtonScratch<P>;
     type Hits = Hit<P::Scalar>;
 
     #[inline]
@@ -273,7 +242,7 @@ impl<P: Point, R: Room<P>> Method<P> for NewtonCoherent<R> {
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Answer<Self::Hits> {
-        let room = &mut R::view(scratch);
+        let room = &mut newton_room(scratch);
         Ok(newton_coherent::closest(scene, patches, grids, memory, line, ray, interval, limits, room, work)?)
     }
 }

@@ -9,14 +9,12 @@ use crate::bake::Baked;
 use crate::lower::{LowerError, Lowered, Stages, unfit};
 use crate::memory::Bytes;
 use crate::method::in_view::{ClippingPredicted, NewtonPredicted, ViewMethod};
-use crate::method::{
-    AllHits, AnyHit, Bare, Clipping, ClippingCoherent, Method, Newton, NewtonCoherent, Proving, Views,
-};
+use crate::method::{AllHits, AnyHit, Clipping, ClippingCoherent, Method, Newton, NewtonCoherent, Views};
 use crate::scanline::view::{LineOptions, ViewTracer, most_lane_bytes};
 use crate::scanline::{Found, LaneBytes, MethodTracer, Told, Tracer};
 use crate::scene::camera;
 use crate::scene::model::Model;
-use crate::scene::trace::{Acceptance, Method as Which, Precision};
+use crate::scene::trace::{Method as Which, Precision};
 use crate::settings::Settings;
 
 /// A lowered scene. A model without a rational surface has plain points; one rational surface makes all of them weighted.
@@ -45,7 +43,7 @@ macro_rules! any {
 }
 
 /// Whether the model needs weighted points.
-fn is_rational(model: &Model) -> bool {
+pub(crate) fn is_rational(model: &Model) -> bool {
     model.surfaces.iter().any(|surface| surface.rational)
 }
 
@@ -106,25 +104,20 @@ where
 fn most_lane_bytes_of<P: Point>(method: Which, lowered: &Lowered<P>) -> LaneBytes {
     let (surfaces, patches) = (lowered.scene().len(), lowered.patches().all().len());
     match method {
-        Which::Newton => most_lane_bytes::<Newton<Proving>, P>(surfaces, patches),
-        Which::NewtonCoherent => most_lane_bytes::<NewtonCoherent<Proving>, P>(surfaces, patches),
+        Which::Newton => most_lane_bytes::<Newton, P>(surfaces, patches),
+        Which::NewtonCoherent => most_lane_bytes::<NewtonCoherent, P>(surfaces, patches),
         Which::Clipping => most_lane_bytes::<Clipping, P>(surfaces, surfaces),
         Which::ClippingCoherent => most_lane_bytes::<ClippingCoherent, P>(surfaces, patches),
-        Which::NewtonPredicted => most_lane_bytes::<NewtonPredicted<Proving>, P>(surfaces, patches),
+        Which::NewtonPredicted => most_lane_bytes::<NewtonPredicted, P>(surfaces, patches),
         Which::ClippingPredicted => most_lane_bytes::<ClippingPredicted, P>(surfaces, patches),
     }
 }
 
 /// The tracer of any rays, of the closest hits.
 fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
-    let proves = settings.acceptance == Acceptance::Proved;
     match settings.method.of_any_rays() {
-        Which::Newton if proves => tracer::<Newton<Proving>, _>(views, settings),
-        Which::Newton => tracer::<Newton<Bare>, _>(views, settings),
-        Which::NewtonCoherent | Which::NewtonPredicted if proves => {
-            tracer::<NewtonCoherent<Proving>, _>(views, settings)
-        }
-        Which::NewtonCoherent | Which::NewtonPredicted => tracer::<NewtonCoherent<Bare>, _>(views, settings),
+        Which::Newton => tracer::<Newton, _>(views, settings),
+        Which::NewtonCoherent | Which::NewtonPredicted => tracer::<NewtonCoherent, _>(views, settings),
         Which::Clipping => tracer::<Clipping, _>(views, settings),
         Which::ClippingCoherent | Which::ClippingPredicted => tracer::<ClippingCoherent, _>(views, settings),
     }
@@ -133,10 +126,7 @@ fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dy
 /// The tracer of any rays, of the first hits that are found, by [`Which::of_any_hits`].
 fn any_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
     match settings.method.of_any_hits() {
-        Which::Newton if settings.acceptance == Acceptance::Proved => {
-            tracer::<AnyHit<Newton<Proving>>, _>(views, settings)
-        }
-        Which::Newton => tracer::<AnyHit<Newton<Bare>>, _>(views, settings),
+        Which::Newton => tracer::<AnyHit<Newton>, _>(views, settings),
         _ => tracer::<AnyHit<Clipping>, _>(views, settings),
     }
 }
@@ -202,16 +192,12 @@ impl Prepared {
         options: LineOptions,
         others: Others,
     ) -> Result<Tracers<'_>, LowerError> {
-        let proves = settings.acceptance == Acceptance::Proved;
         any!(self, lowered => match settings.method {
-            Which::Newton if proves => view_tracers::<Newton<Proving>, _>(lowered, picture, settings, options, others),
-            Which::Newton => view_tracers::<Newton<Bare>, _>(lowered, picture, settings, options, others),
-            Which::NewtonCoherent if proves => view_tracers::<NewtonCoherent<Proving>, _>(lowered, picture, settings, options, others),
-            Which::NewtonCoherent => view_tracers::<NewtonCoherent<Bare>, _>(lowered, picture, settings, options, others),
+            Which::Newton => view_tracers::<Newton, _>(lowered, picture, settings, options, others),
+            Which::NewtonCoherent => view_tracers::<NewtonCoherent, _>(lowered, picture, settings, options, others),
             Which::Clipping => view_tracers::<Clipping, _>(lowered, picture, settings, options, others),
             Which::ClippingCoherent => view_tracers::<ClippingCoherent, _>(lowered, picture, settings, options, others),
-            Which::NewtonPredicted if proves => view_tracers::<NewtonPredicted<Proving>, _>(lowered, picture, settings, options, others),
-            Which::NewtonPredicted => view_tracers::<NewtonPredicted<Bare>, _>(lowered, picture, settings, options, others),
+            Which::NewtonPredicted => view_tracers::<NewtonPredicted, _>(lowered, picture, settings, options, others),
             Which::ClippingPredicted => view_tracers::<ClippingPredicted, _>(lowered, picture, settings, options, others),
         })
     }
@@ -221,10 +207,7 @@ impl Prepared {
         any!(self, lowered => {
             let views = Views::of(lowered);
             match settings.method {
-                Which::Newton if settings.acceptance == Acceptance::Proved => {
-                    Some(tracer::<AllHits<Newton<Proving>>, _>(views, settings))
-                }
-                Which::Newton => Some(tracer::<AllHits<Newton<Bare>>, _>(views, settings)),
+                Which::Newton => Some(tracer::<AllHits<Newton>, _>(views, settings)),
                 Which::Clipping => Some(tracer::<AllHits<Clipping>, _>(views, settings)),
                 _ => None,
             }

@@ -2,7 +2,7 @@
 
 use patchray_host::lower::Stages;
 use patchray_host::prepared::Prepared;
-use patchray_host::scanline::Tally;
+use patchray_host::scanline::{self, Tally};
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::shapes::Random;
 use patchray_host::scene::trace::{Method, Precision};
@@ -29,7 +29,7 @@ fn steps(case: &Case, rays: &[RayLine], settings: &Settings, hits_only: bool) ->
         let (mut outcomes, mut tally) = (Vec::new(), Tally { each: Some(Vec::new()), ..Tally::default() });
         lane.trace(std::slice::from_ref(ray), false, &mut outcomes, &mut tally);
         if tally.hits > 0 || !hits_only {
-            all.extend(tally.each.unwrap_or_default().iter().map(|each| each.steps));
+            all.extend(tally.each.unwrap_or_default().iter().map(scanline::steps));
         }
     }
     all.sort_unstable();

@@ -22,7 +22,9 @@ use crate::patch::Patches;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::region::Order;
+use crate::scalar::Scalar;
 use crate::scene::Scene;
+use crate::story::Event;
 use crate::sweep::{Along, InGrid};
 use crate::verify::{Verdict, verdict};
 use crate::view::{View, ViewRay};
@@ -94,6 +96,9 @@ fn search<P: Point>(
     // The closest root at all but those before the interval: what the next ray begins at.
     let mut closest: Option<Root<P::Scalar>> = None;
     let mut first = previous.is_some();
+    if let Some(previous) = previous {
+        P::Scalar::tell(|| Event::Remembered(previous.map(P::Scalar::to_f64)));
+    }
     let mut roots = clipper.roots(Order::around(previous))?;
     // Ends with the roots.
     while let Some(root) = roots.next(work)? {
@@ -108,7 +113,9 @@ fn search<P: Point>(
             continue;
         }
         first = false;
-        match verdict(along, planes, &root, nearest, limits, work)? {
+        let verdict = verdict(along, planes, &root, nearest, limits, work)?;
+        P::Scalar::tell(|| if verdict == Verdict::Closest { Event::Verified } else { Event::Refused });
+        match verdict {
             Verdict::Closest => {
                 work.verified += 1;
                 break;

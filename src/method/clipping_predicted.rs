@@ -26,6 +26,7 @@ use crate::point::Point;
 use crate::ray::Hit;
 use crate::region::Region;
 use crate::scalar::Scalar;
+use crate::story::Event;
 use crate::surface::Surface;
 use crate::verify::{met_at_most_once, reaches};
 use crate::view::{Facing, View, ViewRay};
@@ -103,8 +104,12 @@ fn closest_so_far<P: Point>(
     let mut resumed = false;
     let start = start.filter(|_| search.nearby.holds_surface(last));
     if let (Some(start), Some(slot)) = (start, memory.slots.get_mut(last as usize)) {
+        P::Scalar::tell(|| Event::Remembered(start.map(P::Scalar::to_f64)));
         resumed = search.resume(last, start, slot, stamp, best, work)?;
         work.start_failed += u32::from(!resumed);
+        if !resumed {
+            P::Scalar::tell(|| Event::StartFailed);
+        }
     }
     if !resumed {
         *best = None;
@@ -167,6 +172,7 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         // At once, and not when it is known to be the closest: the next ray's start waits for it.
         slot.keep(&point, &local, ray, stamp);
         *best = Some(Best { root: point, surface, kept: true });
+        P::Scalar::tell(|| Event::Testing);
         let alone = Alone::new(&point, &local, of_window.bend);
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
@@ -179,6 +185,7 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
             } else {
                 !reaches(crossing, &DepthRange { min: ray.range.min, max: farthest })
             };
+            P::Scalar::tell(|| Event::Listed { owner });
             if known {
                 return Ok(farthest);
             }
@@ -188,8 +195,10 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         })?;
         if verified {
             work.verified += 1;
+            P::Scalar::tell(|| Event::Verified);
         } else {
             work.decided_by_list += 1;
+            P::Scalar::tell(|| Event::DecidedByList);
         }
         Ok(true)
     }
@@ -198,6 +207,7 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
     fn in_full(&mut self, best: &mut Option<Best<P::Scalar>>, work: &mut Work) -> Result<(), Limit> {
         let (ray, limits, nearby) = (self.ray, self.limits, self.nearby);
         work.full_searches += 1;
+        P::Scalar::tell(|| Event::FullSearch);
         nearby.visit(
             &ray.planes,
             ray.range.max,

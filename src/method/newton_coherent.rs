@@ -24,6 +24,7 @@ use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
+use crate::story::Event;
 use crate::sweep::{Along, InGrid};
 use crate::verify::{met_at_most_once, testing_ray};
 use crate::view::{View, ViewRay};
@@ -114,6 +115,7 @@ impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> 
         let Some(start) = previous else {
             return Ok(None);
         };
+        P::Scalar::tell(|| Event::Remembered(start.map(P::Scalar::to_f64)));
         // A point before the interval says nothing about what lies in it.
         let point = self.solver.solve(start, work)?.filter(|root| !self.solver.planes.is_before_interval(root.depth));
         let verified = match point {
@@ -121,6 +123,9 @@ impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> 
             None => None,
         };
         work.start_failed += u32::from(verified.is_none());
+        if verified.is_none() {
+            P::Scalar::tell(|| Event::StartFailed);
+        }
         Ok(verified)
     }
 
@@ -150,8 +155,10 @@ impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> 
         }
         if alone {
             work.verified += 1;
+            P::Scalar::tell(|| Event::Verified);
         } else {
             work.decided_by_list += 1;
+            P::Scalar::tell(|| Event::DecidedByList);
         }
         Ok(closest)
     }
@@ -160,6 +167,7 @@ impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> 
     fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
         let (planes, limits) = (self.solver.planes, self.solver.limits);
         work.full_searches += 1;
+        P::Scalar::tell(|| Event::FullSearch);
         let Search { solver, fallback, along, range } = self;
         let mut best: Option<Root<P::Scalar>> = None;
         along.ahead(planes, range, limits, work, |patch, crossing, work| {

@@ -20,6 +20,8 @@ use crate::patch::Patch;
 use crate::planes::DepthRange;
 use crate::point::Point;
 use crate::ray::Hit;
+use crate::scalar::Scalar;
+use crate::story::Event;
 use crate::verify::{met_at_most_once, reaches};
 use crate::view::{Facing, View, ViewRay};
 
@@ -98,8 +100,12 @@ fn closest_so_far<P: Point, F: Fallback<P>>(
     let mut search = Search { view, ray, nearby, solver, fallback: &mut scratch.fallback };
     let mut resumed = false;
     if let (Some(start), Some(slot)) = (start, memory.slots.get_mut(last as usize)) {
+        P::Scalar::tell(|| Event::Remembered(start.map(P::Scalar::to_f64)));
         resumed = search.resume(start, slot, stamp, best, work)?;
         work.start_failed += u32::from(!resumed);
+        if !resumed {
+            P::Scalar::tell(|| Event::StartFailed);
+        }
     }
     if !resumed {
         *best = None;
@@ -150,6 +156,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         // At once, and not when it is known to be the closest: the next ray's start waits for it.
         slot.keep(&point, &local, ray, stamp);
         *best = Some(Best { root: point, surface, kept: true });
+        P::Scalar::tell(|| Event::Testing);
         let alone = Alone::new(&point, &local, solver.surface.bend);
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
@@ -162,6 +169,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
             } else {
                 !reaches(crossing, &DepthRange { min: ray.range.min, max: farthest })
             };
+            P::Scalar::tell(|| Event::Listed { owner });
             if known {
                 return Ok(farthest);
             }
@@ -174,8 +182,10 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         })?;
         if verified {
             work.verified += 1;
+            P::Scalar::tell(|| Event::Verified);
         } else {
             work.decided_by_list += 1;
+            P::Scalar::tell(|| Event::DecidedByList);
         }
         Ok(true)
     }
@@ -185,6 +195,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         let Search { view, ray, nearby, solver, fallback } = self;
         let (planes, limits) = (&ray.planes, solver.limits);
         work.full_searches += 1;
+        P::Scalar::tell(|| Event::FullSearch);
         nearby.visit(
             planes,
             ray.range.max,

@@ -11,6 +11,8 @@ use crate::newton::{Alone, Decided, Root, Solver};
 use crate::patch::{Crossing, Patch};
 use crate::point::Point;
 use crate::region::Region;
+use crate::scalar::Scalar;
+use crate::story::Event;
 
 /// Where to begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,10 +69,14 @@ fn proved_roots<P: Point, F: Fallback<P>>(
     }
     let region = Region { sides: patch.domain().bounds(), ..Region::WHOLE };
     match single_of(solver, region, work)? {
-        Single::Nothing => work.excluded += 1,
+        Single::Nothing => {
+            work.excluded += 1;
+            P::Scalar::tell(|| Event::Excluded);
+        }
         Single::Root(root, _) => found(root, work),
         Single::Unproved => {
             work.handed_over += 1;
+            P::Scalar::tell(|| Event::HandedOver);
             let (decided, region) = match solver.decided {
                 Decided::Nothing => (Decided::Patch, region),
                 _ => (Decided::Surface, Region::WHOLE),
@@ -108,6 +114,9 @@ fn from_patch<P: Point>(
 ) -> Result<Option<Root<P::Scalar>>, Limit> {
     let critical = patch.is_critical(crossing, solver.limits.critical_factor);
     work.critical += u32::from(critical);
+    if critical {
+        P::Scalar::tell(|| Event::Critical);
+    }
     let entrance_first = critical || first == First::Entrance;
     let mut starts_left = solver.limits.newton_starts;
     if !entrance_first && starts_left > 0 {
@@ -134,5 +143,6 @@ fn from_patch<P: Point>(
         }
     }
     work.unresolved += 1;
+    P::Scalar::tell(|| Event::Unresolved);
     Ok(None)
 }

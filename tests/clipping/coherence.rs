@@ -67,7 +67,7 @@ fn common_view<P: Kind>(lines: u32) -> Vec<(Query, u32, Answers<P::Scalar>)> {
     let mut room = Room::<P>::new();
     let mut all = vec![];
     for line in 0..lines {
-        for ray in patchray_host::cmd::render::row(&view, 256 * line / lines) {
+        for ray in patchray_host::scanline::row(&view, 256 * line / lines) {
             let RayLine { origin, direction, .. } = ray;
             let query = Query::new(origin, direction).exact();
             all.push((query, line, ask(&built, &query, &Limits::default(), &mut room)));

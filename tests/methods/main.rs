@@ -111,7 +111,7 @@ fn the_common_view_pixel_by_pixel() {
     let scene = patchray_host::scene::teapot::common_scene().expect("the built-in scene is valid");
     let case = Case { name: "common view", model: scene.model };
     let view = scene.description.camera.view([512, 512]);
-    let rays: Vec<RayLine> = (0..512).flat_map(|py| patchray_host::cmd::render::row(&view, py)).collect();
+    let rays: Vec<RayLine> = (0..512).flat_map(|py| patchray_host::scanline::row(&view, py)).collect();
     let truths = truths(&case, &rays);
     assert_eq!(truths.iter().filter(|truth| truth.closest.is_some()).count(), 109_540);
     assert_eq!(truths.iter().map(|truth| truth.roots).sum::<usize>(), 237_594);

@@ -26,7 +26,7 @@ const TEXT: Rgb = [235, 235, 235];
 const GROUND: Rgb = [0, 0, 0];
 
 /// Most that a count's range says; what is more looks the same.
-const MOST: f64 = 255.0;
+pub const MOST: f64 = 255.0;
 
 /// How numbers become colours.
 #[derive(Clone, Debug, PartialEq)]

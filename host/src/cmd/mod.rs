@@ -8,6 +8,7 @@ pub mod info;
 pub mod interrupt;
 pub mod load;
 pub mod merge;
+pub mod pixel;
 pub mod preview;
 pub mod query;
 pub mod render;

@@ -9,12 +9,13 @@ use clap::Args;
 use super::aov::{self, Aov};
 use super::load::{self, Loaded};
 use super::{
-    Failure, StatsOutputs, check_outputs, interrupt, pool, preview, progress_in_rows, say, say_gave_up, summary,
+    Failure, StatsOutputs, check_outputs, interrupt, pixel, pool, preview, progress_in_rows, say, say_gave_up, summary,
 };
 use crate::drawing::{Drawing, Drawn, Watch, digest, draw};
 use crate::output::{self, Output};
 use crate::picture::part::Part;
 use crate::picture::rows::Rows;
+use crate::scene::camera::View;
 use crate::scene::sampling::Sampling;
 use crate::settings::{Flags, SizeFlag};
 use crate::shade::shadows::Shadows;
@@ -42,6 +43,13 @@ pub struct RenderArgs {
     /// one as a heat map; may be given more than once
     #[arg(long, value_name = "[NAME=]FILE", value_parser = aov::parse, conflicts_with = "rows", help_heading = "Output")]
     pub aov: Vec<Aov>,
+    /// Print what this pixel's rays meet, instead of a picture; counted from 0, from the left and the top
+    #[arg(long, value_name = "X,Y", value_parser = pixel::parse, conflicts_with_all = ["rows", "resume", "aov", "preview"],
+        help_heading = "Output")]
+    pub pixel: Option<[u32; 2]>,
+    /// Tell with `--pixel` all that the method does for each ray
+    #[arg(long, requires = "pixel", help_heading = "Output")]
+    pub explain: bool,
     /// Show the picture in the terminal too
     #[arg(long, help_heading = "Output")]
     pub preview: bool,
@@ -56,8 +64,12 @@ pub struct RenderArgs {
 /// Bad input, too little memory, an output that cannot be written, or an interruption; no output is left behind then but, of an
 /// interrupted run, the part that is finished.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let RenderArgs { scene, size, samples, rows, resume, aov, preview, flags } = args;
+    let RenderArgs { scene, rows, resume, aov, preview, pixel, explain, flags, .. } = args;
     let usage = |message: &str, help: &str| Failure::Usage { message: message.to_owned(), help: help.to_owned() };
+    if let Some(pixel) = *pixel {
+        let loaded = load::scene(scene, flags)?;
+        return pixel::run(&loaded, &view_of(&loaded, args)?, pixel, *explain);
+    }
     let Some(output) = &flags.output else {
         return Err(usage("the picture has no name", "add `-o OUT.png`, or `-o -` for standard output"));
     };
@@ -69,12 +81,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let others = [Some(output), flags.stats.as_ref(), Some(scene)];
     aov::check(aov, &others.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let loaded = load::scene(scene, flags)?;
-    let Some((description, appearance)) = &loaded.scene else {
+    let Some((_, appearance)) = &loaded.scene else {
         return Err(Failure::Internal("a scene without a description".to_owned()));
     };
     let settings = &loaded.settings;
-    let size = size.size.unwrap_or(description.image.size);
-    let view = description.camera.view(size).sampled(samples.unwrap_or(description.image.samples));
+    let view = view_of(&loaded, args)?;
+    let size = view.size;
     let all = Rows::all(size[1]);
     let wanted = rows.as_ref().map_or(all.clone(), |rows| rows.within(&all));
     if wanted.is_empty() {
@@ -140,6 +152,15 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         say(format_args!("{}", summary(&stats)));
     }
     Ok(())
+}
+
+/// The view that a scene and flags ask for.
+fn view_of(loaded: &Loaded, RenderArgs { size, samples, .. }: &RenderArgs) -> Result<View, Failure> {
+    let Some((description, _)) = &loaded.scene else {
+        return Err(Failure::Internal("a scene without a description".to_owned()));
+    };
+    let size = size.size.unwrap_or(description.image.size);
+    Ok(description.camera.view(size).sampled(samples.unwrap_or(description.image.samples)))
 }
 
 /// The file beside a picture in which an interrupted run leaves its rows; none beside standard output.

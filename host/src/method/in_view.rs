@@ -1,7 +1,5 @@
 //! The kernel's methods for the rays of one view, behind one face.
 
-use std::marker::PhantomData;
-
 use patchray::limits::{GaveUp, Limits, Work};
 use patchray::line::{Line, Order};
 use patchray::method::{
@@ -12,7 +10,7 @@ use patchray::point::Point;
 use patchray::ray::Hit;
 use patchray::view::{View, ViewRay};
 
-use super::{Clipping, ClippingCoherent, Newton, NewtonCoherent, PENDING, Room};
+use super::{Clipping, ClippingCoherent, Newton, NewtonCoherent, NewtonScratch, PENDING, newton_room};
 use crate::lower::{NET, ORDER};
 
 /// A method for the rays of a view, over points of type `P`: it looks for the closest hit.
@@ -51,7 +49,7 @@ pub trait ViewMethod<P: Point>: Send + Sync {
 
 /// The closest hit by [`patchray::method::newton_predicted`].
 #[derive(Clone, Copy, Debug)]
-pub struct NewtonPredicted<R>(PhantomData<R>);
+pub struct NewtonPredicted;
 
 /// The closest hit by [`patchray::method::clipping_predicted`].
 #[derive(Clone, Copy, Debug)]
@@ -61,8 +59,8 @@ pub struct ClippingPredicted;
 type ClippingScratch<P> = ClipScratch<P, ORDER, NET, PENDING>;
 
 macro_rules! without_coherence {
-    ($method:ty, $kernel:ident, $scratch:ty, $room:expr $(, $kind:ident)?) => {
-        impl<P: Point $(, $kind: Room<P>)?> ViewMethod<P> for $method {
+    ($method:ty, $kernel:ident, $scratch:ty, $room:expr) => {
+        impl<P: Point> ViewMethod<P> for $method {
             const ORDER: Order = Order::Surfaces;
             type Scratch = $scratch;
             type Slot = ();
@@ -89,8 +87,8 @@ macro_rules! without_coherence {
 }
 
 macro_rules! with_coherence {
-    ($method:ty, $kernel:ident, $scratch:ty, $room:expr, $order:expr, $slot:ident, $memory:ty, $lend:expr $(, $kind:ident)?) => {
-        impl<P: Point $(, $kind: Room<P>)?> ViewMethod<P> for $method {
+    ($method:ty, $kernel:ident, $scratch:ty, $room:expr, $order:expr, $slot:ident, $memory:ty, $lend:expr) => {
+        impl<P: Point> ViewMethod<P> for $method {
             const ORDER: Order = $order;
             type Scratch = $scratch;
             type Slot = $slot<P::Scalar>;
@@ -123,19 +121,18 @@ fn following<S>(slots: &mut [Followed<S>]) -> Following<'_, S> {
     Following { slots, last: u32::MAX }
 }
 
-without_coherence!(Newton<R>, newton, R::Scratch, R::view, R);
+without_coherence!(Newton, newton, NewtonScratch<P>, newton_room);
 without_coherence!(Clipping, clipping, ClippingScratch<P>, ClipScratch::view);
 
 with_coherence!(
-    NewtonCoherent<R>,
+    NewtonCoherent,
     newton_coherent,
-    R::Scratch,
-    R::view,
+    NewtonScratch<P>,
+    newton_room,
     Order::Surfaces,
     Remembered,
     &'c mut [Remembered<P::Scalar>],
-    std::convert::identity,
-    R
+    std::convert::identity
 );
 with_coherence!(
     ClippingCoherent,
@@ -148,15 +145,14 @@ with_coherence!(
     std::convert::identity
 );
 with_coherence!(
-    NewtonPredicted<R>,
+    NewtonPredicted,
     newton_predicted,
-    R::Scratch,
-    R::view,
+    NewtonScratch<P>,
+    newton_room,
     Order::Depth,
     Followed,
     Following<'c, P::Scalar>,
-    following,
-    R
+    following
 );
 with_coherence!(
     ClippingPredicted,

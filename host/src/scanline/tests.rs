@@ -3,7 +3,7 @@ use clap::ValueEnum;
 use super::*;
 use crate::batch::Batch;
 use crate::lower::Stages;
-use crate::method::{Bare, NewtonCoherent};
+use crate::method::NewtonCoherent;
 use crate::prepared::Prepared;
 use crate::scene::shapes::{Random, sphere};
 use crate::scene::teapot;
@@ -78,7 +78,7 @@ fn line_numbers_start_again_before_they_run_out() {
     let settings = Settings { method: Which::NewtonCoherent, ..Settings::default() };
     let prepared = Prepared::build(&model, Stages::of(settings.method), &settings).expect("there is memory");
     let Prepared::WeightedF64(lowered) = &prepared else { panic!("a sphere is rational") };
-    let tracer = MethodTracer::<NewtonCoherent<Bare>, _>::new(Views::of(lowered), settings.limits());
+    let tracer = MethodTracer::<NewtonCoherent, _>::new(Views::of(lowered), settings.limits());
     let mut lane = MethodLane {
         tracer: &tracer,
         scratch: Default::default(),

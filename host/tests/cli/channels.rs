@@ -146,3 +146,23 @@ fn open_exr_reads_the_channels() {
     let highest = python["highest"].as_f64().expect("a number");
     assert!((3.0..3.16).contains(&highest), "{highest}");
 }
+
+#[test]
+fn a_pixel_tells_its_story() {
+    let folder = Folder::new();
+    let short = printed(&folder.done("render scene.toml --method newton --pixel 32,30"));
+    assert!(
+        short.starts_with("pixel 32,30, by newton in f64:\nit meets surface ") && short.lines().count() == 3,
+        "{short}"
+    );
+    let long = printed(&folder.done("render scene.toml --method newton --pixel 32,30 --explain"));
+    for part in ["the ray starts at", "(teapot.bpt):", "Newton's method from", "step 1:", "a root at", "counted: "] {
+        assert!(long.contains(part), "{part} is not in\n{long}");
+    }
+    assert!(printed(&folder.done("render scene.toml --pixel 0,0 --explain")).contains("it meets nothing"));
+    let samples = printed(&folder.done("render scene.toml --pixel 32,30 --samples jittered"));
+    assert!(samples.contains("sample 4 of 4"));
+    folder.fails("render scene.toml --pixel 64,0", 2, &["no pixel 64,0", "64 x 48"]);
+    folder.fails("render scene.toml --explain -o a.png", 2, &["--pixel"]);
+    folder.fails("render scene.toml --pixel 1 -o a.png", 2, &["X,Y"]);
+}

@@ -81,7 +81,6 @@ fn patches_and_coherence_change_work_and_no_hits() {
 fn line_numbers_start_again_before_they_run_out() {
     use super::{ViewLane, ViewTracer};
     use crate::lower::{Lowered, Preparation, Stages};
-    use crate::method::Bare;
     use crate::method::in_view::NewtonPredicted;
     use crate::scanline::Lane;
     use crate::scanline::view::LineOptions;
@@ -96,8 +95,7 @@ fn line_numbers_start_again_before_they_run_out() {
     lowered.take_view(&picture, u64::MAX).expect("there is memory");
     let (views, seen) = lowered.seen(&picture).expect("it was just taken");
     let options = LineOptions { patches: true, coherence: false };
-    let tracer =
-        ViewTracer::<NewtonPredicted<Bare>, _>::new((views.scene, seen), &picture, Limits::default(), options, None);
+    let tracer = ViewTracer::<NewtonPredicted, _>::new((views.scene, seen), &picture, Limits::default(), options, None);
     let mut lane = ViewLane {
         tracer: &tracer,
         scratch: Default::default(),
