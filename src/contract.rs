@@ -83,9 +83,12 @@ pub(crate) fn contract<P: Point>(
         }
         if strays <= limits.tolerance {
             let (mut local, mut next, mut held) = (local, next, region.nearest(next));
-            if !local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance) {
+            let off = [next[0] - held[0], next[1] - held[1]];
+            let seen = !P::RATIONAL || off == [P::Scalar::ZERO; 2];
+            if !(seen && local.may_hold(off, limits.tolerance)) {
                 // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
-                // far along the surface: one more from the border says on which side of it the root lies.
+                // far along the surface, and toward the border a weight may fall, by which distances grow: one more from the
+                // border says on which side of it the root lies.
                 spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
                 local = Local::at(held, surface.net.degrees(), whole, basis)?;
                 P::Scalar::tell(|| local.told());

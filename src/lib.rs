@@ -129,5 +129,6 @@ pub mod line;
 
 pub mod method;
 
-#[cfg(feature = "capi")]
+// Not in the program of unit tests, which links the library as well: a name of C can be there once.
+#[cfg(all(feature = "capi", not(test)))]
 pub mod capi;

@@ -499,8 +499,11 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
             let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
             if surface.strays([du, dv]) <= limits.tolerance && local.is_regular_enough::<P>(limits.tolerance) {
                 // Converged; what is left to see is whether the root lies on the surface or beyond its edge. Of a root on
-                // an edge the step may leave as much on the far side as on the near: neighbours must not both refuse it.
-                if local.may_hold([next_u - held_u, next_v - held_v], limits.tolerance) {
+                // an edge the step may leave as much on the far side as on the near: neighbours must not both refuse it. Toward
+                // an edge the weight may fall, by which distances grow: of what is held there it is to be looked at there.
+                let off = [next_u - held_u, next_v - held_v];
+                let seen = !P::RATIONAL || at_edge || off == [zero; 2];
+                if seen && local.may_hold(off, limits.tolerance) {
                     return Ok(Some(Place { at: [held_u, held_v], local }));
                 }
                 // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries

@@ -173,3 +173,28 @@ fn a_step_by_a_determinant_that_is_partly_rounding_is_not_the_last() {
     }
     assert!(roots > 2000, "{roots}");
 }
+
+/// A weight that falls by 2^10 toward the edge v = 1: what is near the ray by the weight before the edge is a thousand times as far
+/// from it on the edge. Beyond the edge by less than the tolerance before, by far more on it, there is no root.
+#[test]
+fn a_weight_that_falls_toward_an_edge_hides_no_distance() {
+    let weight = [1.0, 1.0 / 1024.0];
+    let points: [Weighted<f64>; 4] =
+        core::array::from_fn(|k| Weighted::new([[-0.25, 0.25][k / 2], [-0.25, 0.25][k % 2], 0.0], weight[k % 2]));
+    let frame = Frame::new(Aabb { low: [-0.5; 3], high: [0.5; 3] });
+    let net = Net::new(1, 1, &points).unwrap();
+    let surface = Surface { number: 0, net, bend: net.bend() };
+    let limits = Limits { tolerance: 1e-4, ..Limits::default() };
+    for (beyond, met) in [(-1e-3, true), (0.0, true), (1e-5, true), (1e-3, false), (1e-2, false), (4e-2, false)] {
+        let ray = frame.ray([0.0, 0.25 + beyond, 2.0], [0.0, 0.0, -1.0]).unwrap();
+        let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
+        for start in [0.9, 0.99, 0.999, 0.5] {
+            let (mut flat, mut basis) = (heapless::Vec::<_, 4>::new(), Basis::<f64, 2>::new());
+            let mut work = Work::default();
+            let root = Solver::new(&surface, &planes, &limits, &mut flat, &mut basis.view())
+                .solve([0.5, start], &mut work)
+                .unwrap();
+            assert!(!root.is_some() || met, "{beyond} {start} {root:?}");
+        }
+    }
+}
