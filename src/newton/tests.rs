@@ -194,7 +194,7 @@ fn a_weight_that_falls_toward_an_edge_hides_no_distance() {
             let root = Solver::new(&surface, &planes, &limits, &mut flat, &mut basis.view())
                 .solve([0.5, start], &mut work)
                 .unwrap();
-            assert!(!root.is_some() || met, "{beyond} {start} {root:?}");
+            assert!(root.is_none() || met, "{beyond} {start} {root:?}");
         }
     }
 }
