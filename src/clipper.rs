@@ -14,11 +14,12 @@ use crate::clip::{Clip, chords, clip, corners};
 use crate::contract::{Contraction, Single, contract, is_provable, single};
 use crate::graze::{Across, across, allowed, first_met, on_line, polished};
 use crate::limits::{Limit, Limits, Work, spend};
-use crate::newton::{Local, Place, Root};
+use crate::local::Local;
 use crate::part::Part;
 use crate::planes::{Planes, project_net};
 use crate::point::Point;
 use crate::region::{Order, Region};
+use crate::root::{Place, Root};
 use crate::roots::Seen;
 use crate::scalar::Scalar;
 use crate::story::Event;
@@ -74,11 +75,8 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
     pub(crate) fn local(&mut self, at: [P::Scalar; 2], work: &mut Work) -> Result<Local<P::Scalar>, Limit> {
         let Clipper { surface: Surface { net, .. }, limits, room, .. } = self;
         let ClipRoom { whole, basis, .. } = &mut **room;
-        spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
         let whole = whole.get(..net.points().len()).ok_or(Limit::Scratch)?;
-        let local = Local::at(at, net.degrees(), whole, basis)?;
-        P::Scalar::tell(|| local.told());
-        Ok(local)
+        Local::step_at(at, net.degrees(), whole, basis, limits, work)
     }
 
     /// All points where the ray's line meets a region of the surface, to `found`. The net has to be projected.

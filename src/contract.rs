@@ -3,11 +3,13 @@
 //! Source: R. Krawczyk, "Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4, 1969.
 
 use crate::bernstein::BasisView;
-use crate::limits::{Limit, Limits, Work, spend};
-use crate::newton::{Local, Place, Root, Solver};
+use crate::limits::{Limit, Limits, Work};
+use crate::local::Local;
+use crate::newton::Solver;
 use crate::planes::Planes;
 use crate::point::Point;
 use crate::region::Region;
+use crate::root::{Place, Root};
 use crate::scalar::Scalar;
 use crate::surface::Surface;
 
@@ -64,9 +66,7 @@ pub(crate) fn contract<P: Point>(
         let halves = region.widths().map(|width| width * P::Scalar::HALF);
         let strays = surface.strays(halves);
         let [u, v] = region.middle();
-        spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
-        let local = Local::at([u, v], surface.net.degrees(), whole, basis)?;
-        P::Scalar::tell(|| local.told());
+        let local = Local::step_at([u, v], surface.net.degrees(), whole, basis, limits, work)?;
         let [along_u, along_v] = local.inverse_bounds(strays);
         // A NaN or a singular Jacobian proves nothing; nor does one that may be all rounding, as of a flat net seen edge on.
         let proved = !local.may_be_singular() && along_u + along_u < halves[0] && along_v + along_v < halves[1];
@@ -89,9 +89,7 @@ pub(crate) fn contract<P: Point>(
                 // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
                 // far along the surface, and toward the border a weight may fall, by which distances grow: one more from the
                 // border says on which side of it the root lies.
-                spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
-                local = Local::at(held, surface.net.degrees(), whole, basis)?;
-                P::Scalar::tell(|| local.told());
+                local = Local::step_at(held, surface.net.degrees(), whole, basis, limits, work)?;
                 let Some([du, dv]) = local.step() else {
                     return Ok(Contraction::Open);
                 };

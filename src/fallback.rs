@@ -6,10 +6,10 @@
 
 use crate::clipper::{ClipRoom, Clipper};
 use crate::limits::{Limit, Limits, Work};
-use crate::newton::Root;
 use crate::planes::Planes;
 use crate::point::Point;
 use crate::region::{Order, Region};
+use crate::root::Root;
 use crate::surface::Surface;
 
 /// What finds the roots of a patch that was handed over.

@@ -10,10 +10,11 @@
 use crate::bernstein::{BasisView, Degrees, Full};
 use crate::clip::{Noise, corners};
 use crate::limits::Limit;
-use crate::newton::{Place, noise};
+use crate::local::noise;
 use crate::planes::Planes;
 use crate::point::{Flat, Point};
 use crate::region::Region;
+use crate::root::Place;
 use crate::scalar::Scalar;
 use crate::surface::Surface;
 

@@ -102,6 +102,12 @@ pub mod subdivide;
 pub mod grid;
 pub mod walk;
 
+mod local;
+
+pub mod root;
+
+mod alone;
+
 pub mod newton;
 
 mod contract;
@@ -124,6 +130,8 @@ pub mod scene;
 pub mod outline;
 
 pub mod view;
+
+pub mod span;
 
 pub mod line;
 

@@ -147,6 +147,6 @@ pub struct Hit<S> {
     /// The surface's number in its scene, from 0.
     pub surface: u32,
     /// Whether the ray is tangent there to working precision: t, u and v are then known to about half the digits only. See
-    /// [`Root::grazing`](crate::newton::Root::grazing).
+    /// [`Root::grazing`](crate::root::Root::grazing).
     pub grazing: bool,
 }

@@ -5,9 +5,10 @@
 
 use crate::bernstein::BasisView;
 use crate::limits::{Limit, Limits};
-use crate::newton::{Local, Root};
+use crate::local::Local;
 use crate::planes::Planes;
 use crate::point::Point;
+use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::surface::Surface;
 

@@ -5,9 +5,9 @@
 //! Newton's methods decide by the list ([`testing_ray`]), the clipping methods ask for yes or no ([`verdict`]).
 
 use crate::limits::{Acceptance, Limit, Limits, Work};
-use crate::newton::Root;
 use crate::patch::{Crossing, Patch};
 use crate::planes::{DepthRange, Planes};
+use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::story::Event;
 use crate::sweep::Along;

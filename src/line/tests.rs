@@ -8,6 +8,7 @@ use crate::ray::Interval;
 use crate::scene::{Scene, SceneError, SceneMemory, SceneOptions, SurfaceSlot};
 use crate::subdivide::{PatchMemory, SubdivideError, SubdivideScratch, Subdivision, subdivide};
 use crate::surface::Net;
+use crate::sweep::Along;
 use crate::view::{Camera, ViewError, ViewMemory};
 use std::vec;
 use std::vec::Vec;

@@ -43,7 +43,7 @@ pub fn closest<P: Point>(
 
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`. `work` grows by what the call did.
 ///
-/// `line` is the ray's, one of surfaces, or of patches in [`Order::Surfaces`](crate::line::Order::Surfaces) where there are
+/// `line` is the ray's, one of surfaces, or of patches in [`Order::Surfaces`](crate::span::Order::Surfaces) where there are
 /// any: then of each surface no more is clipped than the smallest region that holds all patches that the ray meets.
 #[inline]
 pub fn closest_in_view<P: Point>(

@@ -17,11 +17,11 @@ use crate::clipper::{ClipRoom, Clipper};
 use crate::grid::Grids;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::Line;
-use crate::newton::Root;
 use crate::patch::Patches;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::region::Order;
+use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::story::Event;
@@ -59,7 +59,7 @@ pub fn closest<P: Point>(
 
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
-/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::line::Order::Surfaces); it leads the testing ray, and no
+/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::span::Order::Surfaces); it leads the testing ray, and no
 /// grid is walked. All else is as for [`closest`],
 /// but `work` grows by what the call did.
 #[inline]

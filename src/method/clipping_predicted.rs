@@ -15,17 +15,18 @@
 //! Source: the paper's section "An Improvement of Bézier Clipping".
 
 use super::follow::{Best, Followed, Following};
+use crate::alone::Alone;
 use crate::clipper::{ClipRoom, Clipper};
 use crate::contract::Single;
 use crate::limits::{Acceptance, GaveUp, Limit, Limits, Work};
-use crate::line::{InLine, Line};
-use crate::newton::Alone;
+use crate::line::Line;
 use crate::patch::Patch;
 use crate::planes::DepthRange;
 use crate::point::Point;
 use crate::ray::Hit;
 use crate::region::Region;
 use crate::scalar::Scalar;
+use crate::span::InLine;
 use crate::story::Event;
 use crate::surface::Surface;
 use crate::verify::{met_at_most_once, reaches};
@@ -37,7 +38,7 @@ const WINDOW: f64 = 0.002;
 
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
-/// `line` is the ray's, one of patches in [`Order::Depth`](crate::line::Order::Depth). `memory` is lent, and to be left alone
+/// `line` is the ray's, one of patches in [`Order::Depth`](crate::span::Order::Depth). `memory` is lent, and to be left alone
 /// between rays of one scan line. `scan_line` numbers the line: a number that no earlier line with this memory had begins
 /// with no coherence (at most 2³² − 2). `work` grows by what the call did.
 #[inline]

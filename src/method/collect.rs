@@ -1,10 +1,10 @@
 //! All hits of a ray, in a list that the caller lends.
 
 use crate::limits::{GaveUp, Limit, Limits, Work};
-use crate::newton::Root;
 use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
+use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::surface::Surface;

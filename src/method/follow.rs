@@ -9,8 +9,9 @@
 //! optimization", 1970: of all symmetric matrices that explain the last change it is the one nearest to the old.
 
 use crate::limits::Work;
-use crate::newton::{Local, Root};
+use crate::local::Local;
 use crate::planes::Planes;
+use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::view::Facing;
 

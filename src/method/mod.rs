@@ -17,10 +17,10 @@ pub use follow::{Followed, Following};
 use crate::bernstein::{Basis, BasisView};
 use crate::clipper::ClipRoom;
 use crate::fallback::{Fallback, NoFallback};
-use crate::newton::Root;
 use crate::planes::Planes;
 use crate::point::Point;
 use crate::region::Region;
+use crate::root::Root;
 use crate::scalar::Scalar;
 use heapless::vec::{Vec, VecView};
 

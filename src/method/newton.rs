@@ -11,11 +11,12 @@ use super::{ScratchView, collect, keep_closest};
 use crate::fallback::Fallback;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::Line;
-use crate::newton::{Root, Solver};
+use crate::newton::Solver;
 use crate::patch::Patches;
 use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
+use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::surface::Surface;
@@ -50,7 +51,7 @@ pub fn closest<P: Point, F: Fallback<P>>(
 
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
-/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::line::Order::Surfaces): it leads to the patches, and no
+/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::span::Order::Surfaces): it leads to the patches, and no
 /// tree is descended. All else is as for [`closest`],
 /// but `work` grows by what the call did.
 #[inline]

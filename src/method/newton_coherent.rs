@@ -17,11 +17,12 @@ use crate::fallback::Fallback;
 use crate::grid::Grids;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::Line;
-use crate::newton::{Root, Solver};
+use crate::newton::Solver;
 use crate::patch::Patches;
 use crate::planes::DepthRange;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
+use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::story::Event;
@@ -60,7 +61,7 @@ pub fn closest<P: Point, F: Fallback<P>>(
 
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
-/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::line::Order::Surfaces); instead of walking grids, the
+/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::span::Order::Surfaces); instead of walking grids, the
 /// full search and the testing ray are led by it. All else is as for [`closest`],
 /// but `work` grows by what the call did.
 #[inline]

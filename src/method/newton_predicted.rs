@@ -12,22 +12,24 @@
 use super::ScratchView;
 use super::follow::{Best, Followed, Following};
 use super::starts::{First, roots_of_patch};
+use crate::alone::Alone;
 use crate::fallback::Fallback;
 use crate::limits::{GaveUp, Limit, Limits, Work};
-use crate::line::{InLine, Line};
-use crate::newton::{Alone, Solver};
+use crate::line::Line;
+use crate::newton::Solver;
 use crate::patch::Patch;
 use crate::planes::DepthRange;
 use crate::point::Point;
 use crate::ray::Hit;
 use crate::scalar::Scalar;
+use crate::span::InLine;
 use crate::story::Event;
 use crate::verify::{met_at_most_once, reaches};
 use crate::view::{Facing, View, ViewRay};
 
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
-/// `line` is the ray's, one of patches in [`Order::Depth`](crate::line::Order::Depth). `memory` is lent, and to be left alone
+/// `line` is the ray's, one of patches in [`Order::Depth`](crate::span::Order::Depth). `memory` is lent, and to be left alone
 /// between rays of one scan line. `scan_line` numbers the line: a number that no earlier line with this memory had begins
 /// with no coherence (at most 2³² − 2). `work` grows by what the call did.
 #[inline]

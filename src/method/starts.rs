@@ -4,13 +4,15 @@
 //! does not converge, from the entrance into the parallelepiped; then once more, from where is not said. In the critical
 //! case of eq. (1) the entrance comes first.
 
+use crate::alone::Alone;
 use crate::contract::{Single, single_of};
 use crate::fallback::Fallback;
 use crate::limits::{Acceptance, Limit, Work};
-use crate::newton::{Alone, Decided, Root, Solver};
+use crate::newton::{Decided, Solver};
 use crate::patch::{Crossing, Patch};
 use crate::point::Point;
 use crate::region::Region;
+use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::story::Event;
 

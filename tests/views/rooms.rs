@@ -2,7 +2,7 @@
 
 use crate::common::{Kind, Prepared};
 use patchray::limits::{GaveUp, Limits, Work};
-use patchray::line::{Line, LineMemory, LineNeeds, Order, Span, Window};
+use patchray::line::{Line, LineMemory, LineNeeds, Window};
 use patchray::method::{
     ClipScratch, Followed, Following, Remembered, Scratch, clipping, clipping_coherent, clipping_predicted, newton,
     newton_coherent, newton_predicted,
@@ -11,6 +11,7 @@ use patchray::patch::Patch;
 use patchray::point::Point;
 use patchray::ray::Hit;
 use patchray::scalar::Scalar;
+use patchray::span::{Order, Span};
 use patchray::view::{Camera, Sight, View, ViewError, ViewMemory, ViewNeeds, ViewRay};
 use patchray_host::scene::trace::Method;
 

@@ -1,13 +1,14 @@
 //! The kernel's methods for the rays of one view, behind one face.
 
 use patchray::limits::{GaveUp, Limits, Work};
-use patchray::line::{Line, Order};
+use patchray::line::Line;
 use patchray::method::{
     ClipScratch, Followed, Following, Remembered, clipping, clipping_coherent, clipping_predicted, newton,
     newton_coherent, newton_predicted,
 };
 use patchray::point::Point;
 use patchray::ray::Hit;
+use patchray::span::Order;
 use patchray::view::{View, ViewRay};
 
 use super::{Clipping, ClippingCoherent, Newton, NewtonCoherent, NewtonScratch, PENDING, newton_room};

@@ -6,11 +6,12 @@ use std::time::Instant;
 use patchray::arena::Need;
 use patchray::bernstein::Basis;
 use patchray::limits::{Limit, Limits, Work};
-use patchray::line::{Line, LineMemory, LineNeeds, Span, Window};
+use patchray::line::{Line, LineMemory, LineNeeds, Window};
 use patchray::point::Point;
 use patchray::ray::{Hit, Interval, RayError};
 use patchray::scalar::Scalar;
 use patchray::scene::Scene;
+use patchray::span::Span;
 use patchray::view::View;
 
 use super::{BLOCK, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};

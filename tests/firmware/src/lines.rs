@@ -3,7 +3,8 @@
 use patchray::clipper::ClipRoom;
 use patchray::fallback::NoFallback;
 use patchray::limits::{Extent, Limits, Work};
-use patchray::line::{Line, LineMemory, Order, Span, Window};
+use patchray::line::{Line, LineMemory, Window};
+use patchray::span::{Order, Span};
 use patchray::method::{Followed, Following, ScratchView, clipping_predicted, newton_predicted};
 use patchray::patch::{Patch, Patches};
 use patchray::point::Point;

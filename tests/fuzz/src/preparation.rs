@@ -7,8 +7,9 @@ use crate::ready::{GridRoom, PatchRoom, SceneRoom, Stage, VOXELS, ask_and_fill, 
 use crate::rooms::{LineRoom, ViewRoom, slots};
 use patchray::arena::Need;
 use patchray::grid::GridOptions;
-use patchray::line::{Line, LineMemory, LineNeeds, Order, Window};
+use patchray::line::{Line, LineMemory, LineNeeds, Window};
 use patchray::scene::SceneOptions;
+use patchray::span::Order;
 use patchray::view::{View, ViewError};
 
 pub(crate) fn check(bytes: &[u8]) {

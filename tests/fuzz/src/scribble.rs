@@ -3,12 +3,12 @@
 
 use crate::bytes::Bytes;
 use patchray::grid::GridSlot;
-use patchray::line::Span;
 use patchray::method::{Followed, Remembered};
 use patchray::patch::{Parallelepiped, Patch};
 use patchray::point::{Plain, Weighted};
 use patchray::scalar::Scalar;
 use patchray::scene::{SceneHeader, SurfaceSlot};
+use patchray::span::Span;
 
 /// A slot of plain numbers.
 ///

@@ -3,7 +3,8 @@
 use crate::Lent;
 use crate::entries::{Found, LentPatches, LentScene, ORDER, PENDING, POINTS};
 use patchray::limits::{Limits, Work};
-use patchray::line::{Line, LineMemory, LineNeeds, Order, Span, Window};
+use patchray::line::{Line, LineMemory, LineNeeds, Window};
+use patchray::span::{Order, Span};
 use patchray::method::{
     ClipScratch, Followed, Following, Remembered, Scratch, clipping, clipping_coherent, clipping_predicted, newton,
     newton_coherent, newton_predicted,

@@ -86,9 +86,9 @@ fn line_numbers_start_again_before_they_run_out() {
     use crate::scanline::view::LineOptions;
     use patchray::bernstein::Basis;
     use patchray::limits::Limits;
-    use patchray::line::Span;
     use patchray::method::Followed;
     use patchray::point::Plain;
+    use patchray::span::Span;
 
     let picture = picture(32);
     let mut lowered = Lowered::<Plain<f64>>::build(&teapot(), Stages::PATCHES, &Preparation::default()).expect("built");

@@ -1,0 +1,258 @@
+//! Where in a scan line a surface or a patch can be seen, and what of that lies around one ray.
+
+use crate::limits::{GaveUp, Limit, Limits, Work, spend};
+use crate::patch::{Crossing, Patch};
+use crate::planes::{DepthRange, Planes};
+use crate::point::Point;
+use crate::ray::Hit;
+use crate::root::Root;
+use crate::scalar::Scalar;
+use crate::story::Event;
+use crate::surface::Surface;
+use crate::sweep::Along;
+use crate::view::{Facing, View, ViewRay};
+
+/// Where in a scan line a surface or a patch can be seen: a slot of lent memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Span<S> {
+    /// The least and the largest x.
+    pub(crate) x: [S; 2],
+    /// The least depth.
+    pub(crate) near: S,
+    /// The least depth of the surface that it is of: spans of one surface stand together if ordered by it.
+    pub(crate) front: S,
+    pub(crate) surface: u32,
+    /// The patch's number in the scene, if it is of a patch.
+    pub(crate) patch: u32,
+    /// The next one of those that begin in the same bucket, or `u32::MAX`.
+    pub(crate) next: u32,
+    /// The bucket in which it ends.
+    pub(crate) last: u32,
+}
+
+impl<S: Scalar> Span<S> {
+    /// What a slot holds before it is filled: zeros, of which static memory takes no flash.
+    pub const EMPTY: Self =
+        Span { x: [S::ZERO; 2], near: S::ZERO, front: S::ZERO, surface: 0, patch: 0, next: 0, last: 0 };
+
+    #[inline(always)]
+    fn holds(&self, x: S) -> bool {
+        self.x[0] <= x && x <= self.x[1]
+    }
+
+    /// Whether it comes before another one. No two are equal, so that the list is the same in whatever order it was built.
+    #[inline(always)]
+    pub(crate) fn is_before(&self, other: &Self, order: Order) -> bool {
+        if order == Order::Surfaces {
+            if self.front != other.front {
+                return self.front < other.front;
+            }
+            if self.surface != other.surface {
+                return self.surface < other.surface;
+            }
+        }
+        self.near < other.near || (self.near == other.near && self.patch < other.patch)
+    }
+}
+
+/// In which order spans are searched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// Surface by surface, those in front first, and in each the nearest patch first.
+    Surfaces,
+    /// The nearest patch first, of whatever surface.
+    Depth,
+}
+
+/// The spans around a ray, of one surface or of all, and others that end in the same bucket.
+#[derive(Clone, Copy, Debug)]
+pub struct InLine<'l, S> {
+    pub(crate) spans: &'l [Span<S>],
+    pub(crate) list: &'l [u32],
+    pub(crate) x: S,
+    /// The patches of the view, if the spans are of patches.
+    pub(crate) patches: Option<&'l [Patch<S>]>,
+}
+
+impl<'l, S: Scalar> InLine<'l, S> {
+    /// See [`Line::closest`](crate::line::Line::closest). Of its own, so that a ray that can meet nothing costs no more than to see that.
+    #[inline(never)]
+    pub(crate) fn closest<'v, P: Point<Scalar = S>>(
+        self,
+        view: &View<'v, P>,
+        ray: &ViewRay<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut search: impl FnMut(
+            &Surface<'v, P>,
+            &Planes<S>,
+            DepthRange<S>,
+            &InLine<'_, S>,
+            &Limits<S>,
+            &mut Work,
+        ) -> Result<Option<Root<S>>, Limit>,
+    ) -> Result<Option<Hit<S>>, GaveUp<S>> {
+        let Facing { planes, range, .. } = &view.facing(ray);
+        let mut best: Option<(Root<S>, u32)> = None;
+        let ended = self.surfaces(limits, work, |number, near, in_line, work| {
+            let farthest = best.map_or(range.max, |(root, _)| root.depth);
+            if !(near <= farthest) {
+                return Ok(());
+            }
+            spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
+            let Some(surface) = view.surface(number as usize) else {
+                return Err(Limit::Slot);
+            };
+            let within = DepthRange { min: range.min, max: farthest };
+            S::tell(|| Event::Surface(number));
+            if let Some(root) = search(&surface, planes, within, in_line, limits, work)? {
+                // As in `Scene::closest`.
+                let closer = |(old, other): (Root<S>, u32)| {
+                    root.depth < old.depth || (root.depth == old.depth && number < other)
+                };
+                if best.is_none_or(closer) {
+                    best = Some((root, number));
+                }
+            }
+            Ok(())
+        });
+        let best = best.map(|(root, surface)| root.hit(surface, planes.t(root.depth)));
+        match ended {
+            Ok(()) => Ok(best),
+            Err(limit) => Err(GaveUp { limit, best }),
+        }
+    }
+
+    /// Skips the first ones that do not hold the ray.
+    #[inline(always)]
+    pub(crate) fn skip(&mut self) {
+        // Ends with the list.
+        while let Some((&first, after)) = self.list.split_first() {
+            if self.spans.get(first as usize).is_none_or(|span| span.holds(self.x)) {
+                break;
+            }
+            self.list = after;
+        }
+    }
+
+    /// Each surface of which a span holds the ray, with the least depth of those spans, if the list is ordered by surfaces.
+    #[inline(always)]
+    fn surfaces(
+        mut self,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(u32, S, &Self, &mut Work) -> Result<(), Limit>,
+    ) -> Result<(), Limit> {
+        // Ends: each turn takes at least one span away.
+        while let Some((&first, after)) = self.list.split_first() {
+            spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
+            let span = self.spans.get(first as usize).ok_or(Limit::Slot)?;
+            let same =
+                |&&other: &&u32| self.spans.get(other as usize).is_some_and(|other| other.surface == span.surface);
+            let count = 1 + after.iter().take_while(same).count();
+            let Some((of_surface, others)) = self.list.split_at_checked(count) else {
+                break;
+            };
+            visit(span.surface, span.near, &InLine { list: of_surface, ..self }, work)?;
+            self.list = others;
+            self.skip();
+        }
+        Ok(())
+    }
+
+    /// Calls `visit` with each patch whose parallelepiped the ray meets, and its surface's number: in the order of the list, up to
+    /// the depth that `visit` returned last. Patches for which `skip` says so are left out untested.
+    #[inline(always)]
+    pub(crate) fn visit(
+        &self,
+        planes: &Planes<S>,
+        mut farthest: S,
+        limits: &Limits<S>,
+        work: &mut Work,
+        skip: impl Fn(u32, &Patch<S>) -> bool,
+        mut visit: impl FnMut(u32, &Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
+    ) -> Result<(), Limit> {
+        let patches = self.patches.ok_or(Limit::Line)?;
+        for &number in self.list {
+            spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
+            let span = self.spans.get(number as usize).ok_or(Limit::Slot)?;
+            if !span.holds(self.x) {
+                continue;
+            }
+            if !(span.near <= farthest) {
+                break;
+            }
+            let patch = patches.get(span.patch as usize).ok_or(Limit::Slot)?;
+            if skip(span.surface, patch) {
+                continue;
+            }
+            spend(&mut work.patches_tested, limits.patches, Limit::Patches)?;
+            let crossing = patch.bounds().crossing(planes);
+            S::tell(|| patch.told(crossing.is_some()));
+            if let Some(crossing) = crossing {
+                farthest = visit(span.surface, patch, &crossing, work)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the spans are of patches.
+    pub(crate) fn has_patches(&self) -> bool {
+        self.patches.is_some()
+    }
+
+    /// Whether the list holds a span of the surface around the ray.
+    #[inline(always)]
+    pub(crate) fn holds_surface(&self, surface: u32) -> bool {
+        let spans = self.list.iter().filter_map(|&number| self.spans.get(number as usize));
+        spans.into_iter().any(|span| span.surface == surface && span.holds(self.x))
+    }
+
+    /// The surface of the first span.
+    #[inline(always)]
+    pub(crate) fn first_surface(&self) -> Option<u32> {
+        Some(self.spans.get(*self.list.first()? as usize)?.surface)
+    }
+}
+
+impl<S: Scalar> Along<S> for InLine<'_, S> {
+    #[inline(always)]
+    fn ahead(
+        &self,
+        planes: &Planes<S>,
+        range: &DepthRange<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
+    ) -> Result<(), Limit> {
+        self.visit(
+            planes,
+            range.max,
+            limits,
+            work,
+            |_, _| false,
+            |_, patch, crossing, work| visit(patch, crossing, work),
+        )
+    }
+
+    /// Front to back as well: the way to the nearest patch in the line is short.
+    #[inline(always)]
+    fn back(
+        &self,
+        planes: &Planes<S>,
+        range: &DepthRange<S>,
+        limits: &Limits<S>,
+        work: &mut Work,
+        mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<bool, Limit>,
+    ) -> Result<(), Limit> {
+        self.visit(
+            planes,
+            range.max,
+            limits,
+            work,
+            |_, _| false,
+            |_, patch, crossing, work| Ok(if visit(patch, crossing, work)? { range.max } else { S::LEAST }),
+        )
+    }
+}
