@@ -6,21 +6,20 @@ pub mod words;
 
 use std::cell::RefCell;
 
-use patchray::point::{Plain, Point, Weighted};
+use patchray::point::{Plain, Weighted};
 use patchray::scalar::Scalar;
 use patchray::story::Event;
 use patchray::told::{Listener, Told};
 
 use crate::lower::{FromFile, LowerError, Lowered, Stages};
-use crate::method::in_view::{ClippingPredicted, NewtonPredicted, ViewMethod};
-use crate::method::{Clipping, ClippingCoherent, Newton, NewtonCoherent, Views};
-use crate::prepared::is_rational;
-use crate::scanline::view::{LineOptions, ViewTracer};
-use crate::scanline::{MethodTracer, Outcome, Tally, Tracer, rays_of};
+use crate::method::Views;
+use crate::prepared::{Others, is_rational, rays_tracer, tracers_of_picture};
+use crate::scanline::view::LineOptions;
+use crate::scanline::{Outcome, Tally, rays_of};
 use crate::scene::camera::View;
 use crate::scene::model::Model;
 use crate::scene::rays::RayLine;
-use crate::scene::trace::{Method as Which, Precision};
+use crate::scene::trace::Precision;
 use crate::settings::Settings;
 use patchray::limits::Work;
 
@@ -80,9 +79,10 @@ fn stories<P: FromFile>(
     let unit = lowered.scene().frame().unscale().to_f64();
     let tracer = if has_view {
         lowered.take_view(view, settings.limits.arena_bytes.unwrap_or(u64::MAX))?;
-        of_view(&mut lowered, settings, view, LineOptions { patches: stages.has_patches(), coherence: true })?
+        let options = LineOptions { patches: stages.has_patches(), coherence: true };
+        tracers_of_picture(&mut lowered, view, settings, options, Others::NONE)?.picture
     } else {
-        of_rays(&lowered, settings)
+        rays_tracer(Views::of(&lowered), settings)
     };
     let side = view.sampling.side();
     let mut stories = Vec::new();
@@ -105,44 +105,4 @@ fn stories<P: FromFile>(
         }
     }
     Ok(stories)
-}
-
-fn of_view<'m, P: Point>(
-    lowered: &'m mut Lowered<P>,
-    settings: &Settings,
-    view: &View,
-    options: LineOptions,
-) -> Result<Box<dyn Tracer + 'm>, LowerError> {
-    match settings.method {
-        Which::Newton => in_view::<Newton, P>(lowered, settings, view, options),
-        Which::NewtonCoherent => in_view::<NewtonCoherent, P>(lowered, settings, view, options),
-        Which::NewtonPredicted => in_view::<NewtonPredicted, P>(lowered, settings, view, options),
-        Which::Clipping => in_view::<Clipping, P>(lowered, settings, view, options),
-        Which::ClippingCoherent => in_view::<ClippingCoherent, P>(lowered, settings, view, options),
-        Which::ClippingPredicted => in_view::<ClippingPredicted, P>(lowered, settings, view, options),
-    }
-}
-
-fn in_view<'m, M: ViewMethod<P> + 'm, P: Point>(
-    lowered: &'m mut Lowered<P>,
-    settings: &Settings,
-    view: &View,
-    options: LineOptions,
-) -> Result<Box<dyn Tracer + 'm>, LowerError> {
-    let (views, seen) = lowered.seen(view)?;
-    Ok(Box::new(ViewTracer::<M, P>::new((views.scene, seen), view, settings.limits(), options, None)))
-}
-
-fn of_rays<'m, P: Point>(lowered: &'m Lowered<P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
-    let (views, limits) = (Views::of(lowered), settings.limits());
-    match settings.method.of_any_rays() {
-        Which::Newton => Box::new(MethodTracer::<Newton, P>::new(views, limits)),
-        Which::NewtonCoherent | Which::NewtonPredicted => {
-            Box::new(MethodTracer::<NewtonCoherent, P>::new(views, limits))
-        }
-        Which::Clipping => Box::new(MethodTracer::<Clipping, P>::new(views, limits)),
-        Which::ClippingCoherent | Which::ClippingPredicted => {
-            Box::new(MethodTracer::<ClippingCoherent, P>::new(views, limits))
-        }
-    }
 }

@@ -75,6 +75,11 @@ pub struct Others {
     pub any: bool,
 }
 
+impl Others {
+    /// No rays but those of the scan lines.
+    pub const NONE: Self = Self { closest: false, any: false };
+}
+
 /// What traces the rays of a picture.
 pub struct Tracers<'m> {
     /// Those of its scan lines, and others if wanted: of the closest hits.
@@ -101,6 +106,24 @@ where
     Ok(Tracers { picture: Box::new(picture), any: others.any.then(|| any_tracer(views, settings)) })
 }
 
+/// The tracers of the picture's rays, by the method of `settings`: [`Prepared::view_tracers`].
+pub(crate) fn tracers_of_picture<'m, P: Point>(
+    lowered: &'m mut Lowered<P>,
+    picture: &camera::View,
+    settings: &Settings,
+    options: LineOptions,
+    others: Others,
+) -> Result<Tracers<'m>, LowerError> {
+    match settings.method {
+        Which::Newton => view_tracers::<Newton, P>(lowered, picture, settings, options, others),
+        Which::NewtonCoherent => view_tracers::<NewtonCoherent, P>(lowered, picture, settings, options, others),
+        Which::Clipping => view_tracers::<Clipping, P>(lowered, picture, settings, options, others),
+        Which::ClippingCoherent => view_tracers::<ClippingCoherent, P>(lowered, picture, settings, options, others),
+        Which::NewtonPredicted => view_tracers::<NewtonPredicted, P>(lowered, picture, settings, options, others),
+        Which::ClippingPredicted => view_tracers::<ClippingPredicted, P>(lowered, picture, settings, options, others),
+    }
+}
+
 fn most_lane_bytes_of<P: Point>(method: Which, lowered: &Lowered<P>) -> LaneBytes {
     let (surfaces, patches) = (lowered.scene().len(), lowered.patches().all().len());
     match method {
@@ -114,7 +137,7 @@ fn most_lane_bytes_of<P: Point>(method: Which, lowered: &Lowered<P>) -> LaneByte
 }
 
 /// The tracer of any rays, of the closest hits.
-fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
+pub(crate) fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
     match settings.method.of_any_rays() {
         Which::Newton => tracer::<Newton, _>(views, settings),
         Which::NewtonCoherent | Which::NewtonPredicted => tracer::<NewtonCoherent, _>(views, settings),
@@ -192,14 +215,7 @@ impl Prepared {
         options: LineOptions,
         others: Others,
     ) -> Result<Tracers<'_>, LowerError> {
-        any!(self, lowered => match settings.method {
-            Which::Newton => view_tracers::<Newton, _>(lowered, picture, settings, options, others),
-            Which::NewtonCoherent => view_tracers::<NewtonCoherent, _>(lowered, picture, settings, options, others),
-            Which::Clipping => view_tracers::<Clipping, _>(lowered, picture, settings, options, others),
-            Which::ClippingCoherent => view_tracers::<ClippingCoherent, _>(lowered, picture, settings, options, others),
-            Which::NewtonPredicted => view_tracers::<NewtonPredicted, _>(lowered, picture, settings, options, others),
-            Which::ClippingPredicted => view_tracers::<ClippingPredicted, _>(lowered, picture, settings, options, others),
-        })
+        any!(self, lowered => tracers_of_picture(lowered, picture, settings, options, others))
     }
 
     /// The same of all hits; `None` if the method looks for no more than the closest.

@@ -12,6 +12,7 @@ use patchray_host::stress::case::{Case, Draw, Family, Shot};
 use patchray_host::stress::families::all;
 use patchray_host::stress::run::{Plan, family};
 use patchray_host::stress::truth::in_precision;
+use rayon::prelude::*;
 
 fn of(names: &[&str]) -> Vec<Family> {
     let families: Vec<Family> = all().into_iter().filter(|family| names.contains(&family.name)).collect();
@@ -58,26 +59,26 @@ fn allowed(family: &str, method: Method) -> u32 {
 /// ray through a pole clipped each of the patches that meet there.
 #[test]
 fn a_graze_takes_little_more_work_than_a_hit() {
-    for precision in [Precision::F64, Precision::F32] {
-        for method in [Method::Clipping, Method::Newton, Method::ClippingCoherent, Method::NewtonCoherent] {
-            let settings = Settings { method, precision, ..Settings::of_flags(&Flags::default()) };
-            for family in of(&["grazing-paraboloid", "grazing-sphere", "grazing-cubic", "grazing-plane", "poles"]) {
-                let mut draw = Draw { random: Random(5), rays: 1000, precision };
-                for case in (family.cases)(&mut draw) {
-                    let case = in_precision(&case, precision);
-                    let Shot::Rays(grazes) = &case.shot else { panic!("they are rays") };
-                    let hits = Case::of_rays(case.model.clone(), draw.rays_onto(&case.model, 1000));
-                    let hits = in_precision(&hits, precision);
-                    let Shot::Rays(onto) = &hits.shot else { panic!("they are rays") };
-                    let (typical, all) = (steps(&case, onto, &settings, true), steps(&case, grazes, &settings, false));
-                    let (median, worst) = (typical[typical.len() / 2], all[all.len() - 1]);
-                    let name = format!("{} {} {}", family.name, method.name(), precision.name());
-                    println!("{name}: median {median}, worst {worst}");
-                    assert!(worst <= allowed(family.name, method) * median, "{name}: median {median}, worst {worst}");
-                }
+    let methods = [Method::Clipping, Method::Newton, Method::ClippingCoherent, Method::NewtonCoherent];
+    let kinds = [Precision::F64, Precision::F32].map(|precision| methods.map(|method| (precision, method)));
+    kinds.as_flattened().par_iter().for_each(|&(precision, method)| {
+        let settings = Settings { method, precision, ..Settings::of_flags(&Flags::default()) };
+        for family in of(&["grazing-paraboloid", "grazing-sphere", "grazing-cubic", "grazing-plane", "poles"]) {
+            let mut draw = Draw { random: Random(5), rays: 1000, precision };
+            for case in (family.cases)(&mut draw) {
+                let case = in_precision(&case, precision);
+                let Shot::Rays(grazes) = &case.shot else { panic!("they are rays") };
+                let hits = Case::of_rays(case.model.clone(), draw.rays_onto(&case.model, 1000));
+                let hits = in_precision(&hits, precision);
+                let Shot::Rays(onto) = &hits.shot else { panic!("they are rays") };
+                let (typical, all) = (steps(&case, onto, &settings, true), steps(&case, grazes, &settings, false));
+                let (median, worst) = (typical[typical.len() / 2], all[all.len() - 1]);
+                let name = format!("{} {} {}", family.name, method.name(), precision.name());
+                println!("{name}: median {median}, worst {worst}");
+                assert!(worst <= allowed(family.name, method) * median, "{name}: median {median}, worst {worst}");
             }
         }
-    }
+    });
 }
 
 /// Of seeds that nothing was tuned on: `clipping` loses no judged ray, and no method does more than it may.
@@ -85,18 +86,16 @@ fn a_graze_takes_little_more_work_than_a_hit() {
 fn what_must_hold_holds_of_any_seed() {
     let settings = Settings::of_flags(&Flags::default());
     let families = all();
-    let mut lines = Vec::new();
-    for seed in [2] {
-        let plan = Plan { settings: &settings, seed, rays: RAYS / 4 };
-        for hard in &families {
-            for precision in [Precision::F64, Precision::F32] {
-                let rows = family(hard, precision, &plan, |_| true);
-                lines.extend(rows.iter().flat_map(|row| broken(row, &families)));
-                // In f64 the proofs leave nothing to the paper's rule, by any method.
-                let lost = rows.iter().filter(|row| row.precision == Precision::F64 && row.score.lost() > 0);
-                lines.extend(lost.map(|row| format!("{} {}: {:?}", row.family, row.method.name(), row.score)));
-            }
-        }
-    }
+    let plan = Plan { settings: &settings, seed: 2, rays: RAYS / 4 };
+    let kinds = families.par_iter().flat_map(|hard| [(hard, Precision::F64), (hard, Precision::F32)]);
+    let lines: Vec<String> = kinds
+        .flat_map_iter(|(hard, precision)| {
+            let rows = family(hard, precision, &plan, |_| true);
+            // In f64 the proofs leave nothing to the paper's rule, by any method.
+            let lost = rows.iter().filter(|row| row.precision == Precision::F64 && row.score.lost() > 0);
+            let lost = lost.map(|row| format!("{} {}: {:?}", row.family, row.method.name(), row.score));
+            rows.iter().flat_map(|row| broken(row, &families)).chain(lost).collect::<Vec<_>>()
+        })
+        .collect();
     assert!(lines.is_empty(), "{}", lines.join("\n"));
 }

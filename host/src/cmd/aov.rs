@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Failure, place, progress_in_rows};
+use super::{Failure, progress_in_rows};
 use crate::channels::heat::{self, Scale};
 use crate::channels::{exr, seen};
 use crate::output;
@@ -22,7 +22,7 @@ pub enum Aov {
 
 impl Aov {
     /// Where to.
-    fn path(&self) -> &Path {
+    pub fn path(&self) -> &Path {
         match self {
             Aov::All(path) | Aov::Heat(_, path) => path,
         }
@@ -44,22 +44,6 @@ pub fn parse(text: &str) -> Result<Aov, String> {
         },
         _ => Err("write FILE.exr for all channels, or NAME=FILE.png for one as a heat map".to_owned()),
     }
-}
-
-/// Refuses channels that would go where something else goes.
-pub fn check(aovs: &[Aov], others: &[&Path]) -> Result<(), Failure> {
-    let mut places: Vec<PathBuf> = others.iter().map(|path| place(path)).collect();
-    for aov in aovs {
-        let place = place(aov.path());
-        if places.contains(&place) {
-            return Err(Failure::Usage {
-                message: format!("`{}` is named twice", aov.path().display()),
-                help: "name a file of its own for each --aov".to_owned(),
-            });
-        }
-        places.push(place);
-    }
-    Ok(())
 }
 
 /// Traces the view's channels and writes them.
@@ -101,13 +85,5 @@ mod tests {
         for wrong in ["", "s.png", "u=s.exr.txt", "u"] {
             assert!(parse(wrong).is_err(), "{wrong}");
         }
-    }
-
-    #[test]
-    fn no_file_is_written_twice() {
-        let all = [Aov::All("a.exr".into()), Aov::Heat("u", "./a.png".into())];
-        assert!(check(&all, &[Path::new("b.png")]).is_ok());
-        assert!(check(&all, &[Path::new("a.png")]).is_err());
-        assert!(check(&[all[0].clone(), all[0].clone()], &[]).is_err());
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::load::{self, Loaded};
+use super::outputs::check_all;
 use super::{Failure, say};
 use crate::lower::Stages;
 use crate::output;
@@ -39,15 +40,9 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
             help: "name their file with --rust or --c, and ask `info` for their bytes".to_owned(),
         });
     }
-    for output in [rust, c] {
-        super::check_outputs(output.as_deref(), &[file], flags)?;
-    }
-    if rust.is_some() && rust == c {
-        return Err(Failure::Usage {
-            message: "--rust and --c name one file".to_owned(),
-            help: "give each a file of its own".to_owned(),
-        });
-    }
+    let named = [("--rust", rust), ("--c", c)].map(|(flag, path)| Some((flag, path.as_deref()?)));
+    let named: Vec<_> = named.into_iter().flatten().collect();
+    check_all(None, &named, &[file], flags)?;
     let Loaded { model, settings, .. } = load::scene_or_patches(file, flags)?;
     let prepared = Prepared::build(&model, Stages::of(settings.method), &settings)?;
     let baked = prepared.baked(settings.method);

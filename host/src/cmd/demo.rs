@@ -9,7 +9,8 @@ use clap::{Args, ValueEnum};
 use rayon::ThreadPool;
 use serde::Serialize;
 
-use super::{Failure, StatsOutputs, check_outputs, pool, progress};
+use super::outputs::{StatsOutputs, check_outputs};
+use super::{Failure, pool, progress};
 use crate::drawing::{Drawing, Drawn, Watch, draw};
 use crate::judge::{Agreement, OracleStats, Truth, ask};
 use crate::oracle::Oracle;

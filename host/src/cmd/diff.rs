@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Failure, check_outputs};
+use super::Failure;
+use super::outputs::check_outputs;
 use crate::channels::difference::{Difference, OfChannel};
 use crate::channels::{Channels, read};
 use crate::output::{self, Output};

@@ -19,8 +19,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use super::Failure;
 use super::load::{self, Loaded, LoadedFile};
-use super::{Failure, check_outputs};
+use super::outputs::check_outputs;
 use crate::lower::{LowerError, Stages};
 use crate::memory::Bytes;
 use crate::output::Output;

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Failure, check_outputs, say};
+use super::outputs::check_outputs;
+use super::{Failure, say};
 use crate::output;
 use crate::picture::part::{Part, PartError};
 use crate::settings::Flags;

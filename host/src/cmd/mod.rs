@@ -8,6 +8,7 @@ pub mod info;
 pub mod interrupt;
 pub mod load;
 pub mod merge;
+mod outputs;
 pub mod pixel;
 pub mod preview;
 pub mod query;
@@ -19,21 +20,18 @@ pub mod tables;
 
 use std::fmt;
 use std::io::{self, IsTerminal, Write};
-use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{HumanCount, ProgressBar, ProgressState, ProgressStyle};
 use miette::Diagnostic;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use serde::Serialize;
 use thiserror::Error;
 
 use crate::lower::LowerError;
-use crate::output::{Output, OutputError};
+use crate::output::OutputError;
 use crate::picture::rows::Rows;
 use crate::scene::error::InputError;
-use crate::settings::Flags;
-use crate::stats::{Asked, Stats, to_json};
+use crate::stats::{Asked, Stats};
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug, Error, Diagnostic)]
@@ -123,57 +121,6 @@ impl Failure {
 /// Says something on standard error. That nobody can hear it is no reason to end.
 pub fn say(text: std::fmt::Arguments) {
     let _ = writeln!(io::stderr().lock(), "{text}");
-}
-
-/// Where a path leads, however it is spelled: links followed, and of a file that is not there yet the folder's.
-fn place(path: &Path) -> PathBuf {
-    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let beside = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
-    path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_owned())
-}
-
-/// Refuses flags that send more than one thing to standard output, two things to one file, or anything to an input.
-pub(crate) fn check_outputs(output: Option<&Path>, inputs: &[&Path], flags: &Flags) -> Result<(), Failure> {
-    let stdout = Path::new("-");
-    let usage = |message: &str, help: &str| Err(Failure::Usage { message: message.to_owned(), help: help.to_owned() });
-    let to_stdout = [output == Some(stdout), flags.stats.as_deref() == Some(stdout), flags.json];
-    if to_stdout.iter().filter(|&&to| to).count() > 1 {
-        return usage("two outputs would go to standard output", "name a file for one of them, with -o or --stats");
-    }
-    let file = |path: Option<&Path>| path.filter(|path| *path != stdout).map(place);
-    let (output, stats) = (file(output), file(flags.stats.as_deref()));
-    // A device such as /dev/null takes any number of outputs.
-    if output.is_some() && output == stats && output.as_deref().is_some_and(|path| !path.exists() || path.is_file()) {
-        return usage("-o and --stats name the same file", "name two files");
-    }
-    for input in inputs.iter().filter_map(|input| file(Some(input))) {
-        if input.is_file() && (output.as_ref() == Some(&input) || stats.as_ref() == Some(&input)) {
-            return usage("an output would replace an input", "name another file with -o or --stats");
-        }
-    }
-    Ok(())
-}
-
-/// The open outputs for [`Stats`].
-pub(crate) struct StatsOutputs(Vec<Output>);
-
-impl StatsOutputs {
-    /// Opens the outputs that the flags ask for, before any long work.
-    pub(crate) fn create(flags: &Flags) -> Result<Self, OutputError> {
-        let json = flags.json.then_some(Path::new("-"));
-        let paths = flags.stats.as_deref().into_iter().chain(json);
-        Ok(StatsOutputs(paths.map(Output::create).collect::<Result<_, _>>()?))
-    }
-
-    /// Writes the statistics to all of them.
-    pub(crate) fn finish(self, stats: &impl Serialize) -> Result<(), OutputError> {
-        let text = to_json(stats);
-        for mut output in self.0 {
-            output.write_all(text.as_bytes()).map_err(|reason| output.failed(reason))?;
-            output.finish()?;
-        }
-        Ok(())
-    }
 }
 
 /// Threads for one command.

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::load::{self, Loaded};
-use super::{Failure, StatsOutputs, check_outputs, pool, progress, say, say_gave_up, summary};
+use super::outputs::{StatsOutputs, check_outputs};
+use super::{Failure, pool, progress, say, say_gave_up, summary};
 use crate::batch::Batch;
 use crate::number::Number;
 use crate::output::{Output, OutputError};

@@ -8,9 +8,8 @@ use clap::Args;
 
 use super::aov::{self, Aov};
 use super::load::{self, Loaded};
-use super::{
-    Failure, StatsOutputs, check_outputs, interrupt, pixel, pool, preview, progress_in_rows, say, say_gave_up, summary,
-};
+use super::outputs::{StatsOutputs, check_all};
+use super::{Failure, interrupt, pixel, pool, preview, progress_in_rows, say, say_gave_up, summary};
 use crate::drawing::{Drawing, Drawn, Watch, digest, draw};
 use crate::output::{self, Output};
 use crate::picture::part::Part;
@@ -77,9 +76,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if *resume && unfinished.is_none() {
         return Err(usage("an interrupted run to standard output leaves nothing", "name a file with -o"));
     }
-    check_outputs(Some(output), &[scene], flags)?;
-    let others = [Some(output), flags.stats.as_ref(), Some(scene)];
-    aov::check(aov, &others.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    let channels: Vec<_> = aov.iter().map(|aov| ("--aov", aov.path())).collect();
+    check_all(Some(output), &channels, &[scene], flags)?;
     let loaded = load::scene(scene, flags)?;
     let Some((_, appearance)) = &loaded.scene else {
         return Err(Failure::Internal("a scene without a description".to_owned()));

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::outputs::{StatsOutputs, check_outputs};
 use super::study::refused;
-use super::{Failure, StatsOutputs, check_outputs, say};
+use super::{Failure, say};
 use crate::output;
 use crate::report::study::StudyReport;
 use crate::settings::Flags;

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Failure, StatsOutputs, check_outputs, pool, progress};
+use super::outputs::{StatsOutputs, check_outputs};
+use super::{Failure, pool, progress};
 use crate::output::{self, Output};
 use crate::report::stress::{Report, families};
 use crate::report::table::Style;

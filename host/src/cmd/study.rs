@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, StatsOutputs, load, pool, progress, say};
+use super::outputs::StatsOutputs;
+use super::{Failure, load, pool, progress, say};
 use crate::oracle::Oracle;
 use crate::output;
 use crate::scene::nearest::did_you_mean;

@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::{Failure, StatsOutputs, check_outputs, pool, progress};
+use super::outputs::{StatsOutputs, check_outputs};
+use super::{Failure, pool, progress};
 use crate::judge;
 use crate::measure::{Primary, Scene, passes};
 use crate::oracle::Oracle;

@@ -57,5 +57,6 @@ fn bake_writes_tables_alone() {
     folder.fails("bake scene.toml --rust scene.toml", 2, &["replace an input"]);
     folder.fails("bake scene.toml --rust a.h --c a.h", 2, &["--rust", "--c"]);
     folder.fails("bake scene.toml --c scene.toml", 2, &["replace an input"]);
+    folder.fails("bake scene.toml --rust - --c -", 2, &["standard output"]);
     folder.fails("bake scene.toml --rust a.rs --limit arena-bytes=10", 4, &["10"]);
 }

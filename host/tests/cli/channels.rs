@@ -66,7 +66,7 @@ fn a_heat_map_has_its_legend() {
         assert_eq!(channels(&folder, name).size, [420, 48 + 36]);
     }
     folder.fails("render scene.toml --aov steps=b.png -o b.png", 2, &["no channel `steps`", "newton_steps"]);
-    folder.fails("render scene.toml --aov u=b.png -o b.png", 2, &["named twice"]);
+    folder.fails("render scene.toml --aov u=b.png -o b.png", 2, &["-o and --aov name the same file"]);
     folder.fails("render scene.toml --method clipping --aov patch=p.png -o b.png", 2, &["no channel `patch`"]);
 }
 
