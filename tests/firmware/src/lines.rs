@@ -4,13 +4,13 @@ use patchray::clipper::ClipRoom;
 use patchray::fallback::NoFallback;
 use patchray::limits::{Extent, Limits, Work};
 use patchray::line::{Line, LineMemory, Window};
-use patchray::span::{Order, Span};
 use patchray::method::{Followed, Following, ScratchView, clipping_predicted, newton_predicted};
 use patchray::patch::{Patch, Patches};
 use patchray::point::Point;
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
 use patchray::scene::Scene;
+use patchray::span::{Order, Span};
 use patchray::view::{RUN, Sight, View, ViewMemory};
 
 use crate::hash::Answer;

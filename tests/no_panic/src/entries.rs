@@ -15,7 +15,6 @@ use patchray::measure::Measure;
 use patchray::method::Remembered;
 use patchray::method::{ClipScratch, Scratch, clipping, clipping_coherent, newton, newton_coherent};
 use patchray::newton::Solver;
-use patchray::root::Root;
 use patchray::patch::Patches;
 use patchray::patch::{Crossing, Parallelepiped, Patch, Pierce};
 use patchray::pieces::{InKnots, Part, Piece, PieceError, PieceMemory, Pieces};
@@ -23,6 +22,7 @@ use patchray::planes::{DepthRange, Planes, Projected, project_net};
 use patchray::point::Point;
 use patchray::ray::{Hit, Interval, Ray, RayError};
 use patchray::region::{Order, Region};
+use patchray::root::Root;
 use patchray::scalar::{Scalar, Vector3};
 use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions, SurfaceSlot};
 use patchray::subdivide::{

@@ -4,7 +4,6 @@ use crate::Lent;
 use crate::entries::{Found, LentPatches, LentScene, ORDER, PENDING, POINTS};
 use patchray::limits::{Limits, Work};
 use patchray::line::{Line, LineMemory, LineNeeds, Window};
-use patchray::span::{Order, Span};
 use patchray::method::{
     ClipScratch, Followed, Following, Remembered, Scratch, clipping, clipping_coherent, clipping_predicted, newton,
     newton_coherent, newton_predicted,
@@ -13,6 +12,7 @@ use patchray::patch::Patch;
 use patchray::point::Point;
 use patchray::ray::{Interval, RayError};
 use patchray::scalar::Scalar;
+use patchray::span::{Order, Span};
 use patchray::view::{Camera, Sight, View, ViewError, ViewMemory, ViewRay};
 
 /// A view's memory.
