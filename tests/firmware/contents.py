@@ -29,6 +29,7 @@ PARTS = {
     "tree.rs": {"newton"},
     "view.rs": PREDICTED,
     "line.rs": PREDICTED,
+    "span.rs": PREDICTED,
     # Of no program that traces what was baked.
     "subdivide.rs": set(),
     "measure.rs": set(),
