@@ -116,7 +116,8 @@ impl core::error::Error for ViewError {}
 
 /// What a view holds beside its slots: plain numbers. "Turned" is: in the frame, with the third axis along `forward`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct ViewHeader<S> {
+#[repr(C)]
+pub struct ViewHeader<S> {
     /// The turned eye.
     eye: [S; 3],
     /// The third turned coordinate at which depths of rays are 0: the middle of the scene.
@@ -238,6 +239,39 @@ impl<'m, P: Point> View<'m, P> {
             runs: runs.finish(),
             first_runs: first_runs.finish(),
         })
+    }
+
+    /// A view of slots that [`View::build`] filled before, of the scene and the patches with their points and boxes turned.
+    /// Slots that were filled otherwise give wrong answers, but neither panics nor work beyond the limits.
+    pub const fn new(
+        header: ViewHeader<P::Scalar>,
+        scene: Scene<'m, P>,
+        patches: Patches<'m, P::Scalar>,
+        surfaces: &'m [Sight<P::Scalar>],
+        sights: &'m [Sight<P::Scalar>],
+        runs: &'m [[P::Scalar; 2]],
+        first_runs: &'m [u32],
+    ) -> Self {
+        View { header, scene, patches, surfaces, sights, runs, first_runs }
+    }
+
+    /// What to keep beside the slots, for [`View::new`].
+    pub fn header(&self) -> ViewHeader<P::Scalar> {
+        self.header
+    }
+
+    /// Whether there can be a view of a scene from a camera, but for memory and numbers of patches.
+    #[cfg(all(feature = "capi", not(test)))]
+    pub(crate) fn check(scene: &Scene<'m, P>, camera: &Camera<P::Scalar>) -> Result<(), ViewError> {
+        Lens::of(scene.frame(), camera).map(|_| ())
+    }
+
+    /// How many slots of each kind it takes, in the order of [`ViewMemory`].
+    #[cfg(all(feature = "capi", not(test)))]
+    pub(crate) fn lens(&self) -> [usize; 6] {
+        let View { scene, patches, surfaces, sights, runs, first_runs, .. } = self;
+        let [points, ..] = scene.lens();
+        [points, surfaces.len(), patches.all().len(), sights.len(), runs.len(), first_runs.len()]
     }
 
     /// The patches, turned.

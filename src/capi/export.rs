@@ -12,7 +12,7 @@ use crate::point::{Plain, Weighted};
 
 /// The one number of a call's two kinds of ends.
 #[inline(always)]
-fn code(result: Result<Code, Code>) -> i32 {
+pub(super) fn code(result: Result<Code, Code>) -> i32 {
     match result {
         Ok(code) | Err(code) => code,
     }

@@ -7,8 +7,8 @@
 use super::status::{Code, PATCHRAY_COUNT, PATCHRAY_MISALIGNED, PATCHRAY_NULL, PATCHRAY_OVERLAP};
 use heapless::Vec;
 
-/// The most pieces of memory that one call names: coherent clipping has 17.
-const MOST: usize = 20;
+/// The most pieces of memory that one call names: a scan line by coherent clipping has 23.
+const MOST: usize = 24;
 
 #[derive(Clone, Copy)]
 struct Range {

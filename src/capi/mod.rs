@@ -17,6 +17,7 @@
 #![allow(non_camel_case_types)]
 
 mod export;
+mod export_views;
 mod lend;
 mod panic;
 mod prepare;
@@ -25,8 +26,10 @@ mod status;
 mod tables;
 mod trace;
 mod types;
+mod view;
 
 pub use export::*;
+pub use export_views::*;
 pub use scratch::*;
 pub use status::*;
 pub use types::*;

@@ -10,10 +10,17 @@
 //   patchray_grids_build    patches to grids                     newton_coherent, clipping_coherent
 //   patchray_..._closest    a ray to a hit, a miss, or neither   clipping, clipping_coherent, newton, newton_coherent
 //
+// And for pictures, whose rays start at one eye: no trees and no grids are needed, and the predicted methods are the fastest.
+//
+//   patchray_view_build     a scene, its patches and a camera    all methods (patches: all but clipping)
+//   patchray_..._line       the rays of a scan line, each to     the four methods, clipping_predicted, newton_predicted
+//                           a hit, a miss, or neither
+//
 // Memory. Who calls lends all of it, as addresses and counts. Preparations say how much they need if they are asked with
 // counts of 0: they answer PATCHRAY_MEMORY, and the counts are set. Prepared tables hold the addresses of what was lent, are
-// read only from then on, and may be used by any number of threads; so may tables in flash. Scratch and coherence memory
-// are of one thread at a time. What lent memory holds at first does not matter, but that coherence memory is set.
+// read only from then on, and may be used by any number of threads; so may tables in flash. Scratch, coherence memory and
+// memory of lines are of one thread at a time. What lent memory holds at first does not matter, but that memory of coherence
+// and of lines is set.
 //
 // Answers. Not negative: PATCHRAY_OK, PATCHRAY_MISS, PATCHRAY_HIT. Negative: why there is none; then nothing was written but
 // what is said where it is. An address that is NULL or misaligned, memory that is too short by its count or overlaps other
@@ -170,6 +177,12 @@
 // A surface makes more patches than the options allow.
 #define PATCHRAY_PATCHES -15
 
+// A camera's three vectors lie in a plane, or all but.
+#define PATCHRAY_CAMERA_FLAT -16
+
+// A camera is farther away than eight times the scene's size: trace its rays one by one.
+#define PATCHRAY_CAMERA_FAR -17
+
 // A coordinate of the ray is NaN.
 #define PATCHRAY_RAY_NAN -21
 
@@ -184,6 +197,12 @@
 
 // t_min or t_max is NaN, or t_min is the larger.
 #define PATCHRAY_RAY_INTERVAL -25
+
+// A ray of a view is more than 45 degrees off its camera's forward: to be traced by itself.
+#define PATCHRAY_RAY_OUT_OF_VIEW -26
+
+// A ray of a scan line is not within the line's x and y.
+#define PATCHRAY_RAY_OUT_OF_LINE -27
 
 // The budget of tested surfaces ran out. Of this and all below: neither a hit nor a miss.
 #define PATCHRAY_GAVE_UP_SURFACES -41
@@ -211,6 +230,9 @@
 
 // The list of hits is full; it holds the closest ones.
 #define PATCHRAY_GAVE_UP_HITS -49
+
+// The budget of spans of a scan line ran out.
+#define PATCHRAY_GAVE_UP_SPANS -50
 
 // The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
 #define PATCHRAY_LAYOUT 1
@@ -440,6 +462,8 @@ typedef struct {
   uint32_t patches;
   // Budget: voxels visited.
   uint32_t voxels;
+  // Budget: spans of a scan line visited.
+  uint32_t spans;
   // Budget: Newton iterations.
   uint32_t newton_steps;
   // Budget: clips.
@@ -474,7 +498,7 @@ typedef struct {
   uint32_t patches_tested;
   // Voxels visited.
   uint32_t voxels_visited;
-  // Of scan lines of a view; 0 here.
+  // Spans of a scan line visited.
   uint32_t spans_visited;
   // Newton starts.
   uint32_t newton_starts;
@@ -749,6 +773,8 @@ typedef struct {
   uint32_t patches;
   // Budget: voxels visited.
   uint32_t voxels;
+  // Budget: spans of a scan line visited.
+  uint32_t spans;
   // Budget: Newton iterations.
   uint32_t newton_steps;
   // Budget: clips.
@@ -831,6 +857,274 @@ typedef struct {
   // How many.
   size_t references_len;
 } patchray_grids_memory_f64;
+
+// A pinhole camera: the ray of the image's point (x, y) starts at the eye and has the direction forward + x right + y up.
+typedef struct {
+  // Where all rays start.
+  float eye[3];
+  // The direction of the image's middle, (0, 0).
+  float forward[3];
+  // What one unit of x adds.
+  float right[3];
+  // What one unit of y adds.
+  float up[3];
+} patchray_camera_f32;
+
+// Where a surface or a patch can be seen: a slot of a view's tables.
+typedef struct {
+  // The octagon around it in the image, and its least depth.
+  float numbers[9];
+} patchray_sight_f32;
+
+// Memory that is lent for a view. Counts say how many slots are lent, and after the call how many are needed; with counts of 0
+// addresses may be NULL.
+typedef struct {
+  // Numbers of control points.
+  float *points;
+  // How many numbers.
+  size_t points_len;
+  // What is seen of the surfaces.
+  patchray_sight_f32 *surfaces;
+  // How many.
+  size_t surfaces_len;
+  // Patches; none of a view without patches, as of the three that follow.
+  patchray_patch_f32 *patches;
+  // How many.
+  size_t patches_len;
+  // What is seen of the patches.
+  patchray_sight_f32 *sights;
+  // How many.
+  size_t sights_len;
+  // Rows in which runs of 16 patches are seen.
+  float *runs;
+  // How many numbers.
+  size_t runs_len;
+  // Where each surface's runs begin, and where the last one's end.
+  uint32_t *first_runs;
+  // How many.
+  size_t first_runs_len;
+} patchray_view_memory_f32;
+
+// How a view turns its scene.
+typedef struct {
+  // The turned eye, the scene's middle depth, the turned vectors forward, right and up, and the scale.
+  float numbers[16];
+} patchray_lens_f32;
+
+// A scene as seen by a camera. What tracing by scan lines needs.
+typedef struct {
+  // By which version, precision and kind of control points it was made.
+  uint32_t layout;
+  // How it is turned.
+  patchray_lens_f32 header;
+  // The scene, its control points turned.
+  patchray_scene_f32 scene;
+  // The patches, turned; none of a view without patches.
+  patchray_patches_f32 patches;
+  // What is seen of the surfaces.
+  const patchray_sight_f32 *surfaces;
+  // How many.
+  size_t surfaces_len;
+  // What is seen of the patches.
+  const patchray_sight_f32 *sights;
+  // How many.
+  size_t sights_len;
+  // Rows in which runs of 16 patches are seen.
+  const float *runs;
+  // How many numbers.
+  size_t runs_len;
+  // Where each surface's runs begin, and where the last one's end.
+  const uint32_t *first_runs;
+  // How many.
+  size_t first_runs_len;
+} patchray_view_f32;
+
+// The rays of a scan line of a view.
+typedef struct {
+  // x and y of each ray's point of the image: best from one end of the line to the other.
+  const float *places;
+  // How many numbers: two for each ray.
+  size_t places_len;
+  // The least and the largest x of them all.
+  float x[2];
+  // The least and the largest y; both the same where all rays are in one row.
+  float y[2];
+  // The least t that counts, such as 0.
+  float t_min;
+  // The largest t that counts, such as INFINITY.
+  float t_max;
+  // Numbers the line, from 0 to 0xfffffffe: a number that no earlier line with this coherence memory had.
+  uint32_t number;
+} patchray_line_f32;
+
+// Where in a scan line a surface or a patch can be seen: a slot of memory that is lent for a line.
+typedef struct {
+  // The least and the largest x, its least depth, and its surface's.
+  float numbers[4];
+  // Its surface and patch, the next one, and the bucket in which it ends.
+  uint32_t counts[4];
+} patchray_span_f32;
+
+// Memory that is lent for tracing a scan line, of one thread. Begin with zeros; from then on it is the library's, and may be lent
+// for any other line. On PATCHRAY_MEMORY the counts say how many slots are needed: of no line more than the view has patches, or
+// surfaces if it has no patches.
+typedef struct {
+  // What can be seen in the line.
+  patchray_span_f32 *spans;
+  // How many.
+  size_t spans_len;
+  // What can be seen around a ray: as many as spans are needed.
+  uint32_t *active;
+  // How many.
+  size_t active_len;
+  // At least one; best is about one for each span.
+  uint32_t *buckets;
+  // How many.
+  size_t buckets_len;
+} patchray_line_memory_f32;
+
+// What the last ray of a scan line left on one surface, for the predicted methods: coherence memory of one thread has a slot per
+// surface. Begin with zeros; from then on it is the library's.
+typedef struct {
+  // Where it was, its point, how that moves, and how that changes.
+  float numbers[18];
+  // The scan line, plus one.
+  uint32_t stamp;
+} patchray_followed_f32;
+
+// A pinhole camera: the ray of the image's point (x, y) starts at the eye and has the direction forward + x right + y up.
+typedef struct {
+  // Where all rays start.
+  double eye[3];
+  // The direction of the image's middle, (0, 0).
+  double forward[3];
+  // What one unit of x adds.
+  double right[3];
+  // What one unit of y adds.
+  double up[3];
+} patchray_camera_f64;
+
+// Where a surface or a patch can be seen: a slot of a view's tables.
+typedef struct {
+  // The octagon around it in the image, and its least depth.
+  double numbers[9];
+} patchray_sight_f64;
+
+// Memory that is lent for a view. Counts say how many slots are lent, and after the call how many are needed; with counts of 0
+// addresses may be NULL.
+typedef struct {
+  // Numbers of control points.
+  double *points;
+  // How many numbers.
+  size_t points_len;
+  // What is seen of the surfaces.
+  patchray_sight_f64 *surfaces;
+  // How many.
+  size_t surfaces_len;
+  // Patches; none of a view without patches, as of the three that follow.
+  patchray_patch_f64 *patches;
+  // How many.
+  size_t patches_len;
+  // What is seen of the patches.
+  patchray_sight_f64 *sights;
+  // How many.
+  size_t sights_len;
+  // Rows in which runs of 16 patches are seen.
+  double *runs;
+  // How many numbers.
+  size_t runs_len;
+  // Where each surface's runs begin, and where the last one's end.
+  uint32_t *first_runs;
+  // How many.
+  size_t first_runs_len;
+} patchray_view_memory_f64;
+
+// How a view turns its scene.
+typedef struct {
+  // The turned eye, the scene's middle depth, the turned vectors forward, right and up, and the scale.
+  double numbers[16];
+} patchray_lens_f64;
+
+// A scene as seen by a camera. What tracing by scan lines needs.
+typedef struct {
+  // By which version, precision and kind of control points it was made.
+  uint32_t layout;
+  // How it is turned.
+  patchray_lens_f64 header;
+  // The scene, its control points turned.
+  patchray_scene_f64 scene;
+  // The patches, turned; none of a view without patches.
+  patchray_patches_f64 patches;
+  // What is seen of the surfaces.
+  const patchray_sight_f64 *surfaces;
+  // How many.
+  size_t surfaces_len;
+  // What is seen of the patches.
+  const patchray_sight_f64 *sights;
+  // How many.
+  size_t sights_len;
+  // Rows in which runs of 16 patches are seen.
+  const double *runs;
+  // How many numbers.
+  size_t runs_len;
+  // Where each surface's runs begin, and where the last one's end.
+  const uint32_t *first_runs;
+  // How many.
+  size_t first_runs_len;
+} patchray_view_f64;
+
+// The rays of a scan line of a view.
+typedef struct {
+  // x and y of each ray's point of the image: best from one end of the line to the other.
+  const double *places;
+  // How many numbers: two for each ray.
+  size_t places_len;
+  // The least and the largest x of them all.
+  double x[2];
+  // The least and the largest y; both the same where all rays are in one row.
+  double y[2];
+  // The least t that counts, such as 0.
+  double t_min;
+  // The largest t that counts, such as INFINITY.
+  double t_max;
+  // Numbers the line, from 0 to 0xfffffffe: a number that no earlier line with this coherence memory had.
+  uint32_t number;
+} patchray_line_f64;
+
+// Where in a scan line a surface or a patch can be seen: a slot of memory that is lent for a line.
+typedef struct {
+  // The least and the largest x, its least depth, and its surface's.
+  double numbers[4];
+  // Its surface and patch, the next one, and the bucket in which it ends.
+  uint32_t counts[4];
+} patchray_span_f64;
+
+// Memory that is lent for tracing a scan line, of one thread. Begin with zeros; from then on it is the library's, and may be lent
+// for any other line. On PATCHRAY_MEMORY the counts say how many slots are needed: of no line more than the view has patches, or
+// surfaces if it has no patches.
+typedef struct {
+  // What can be seen in the line.
+  patchray_span_f64 *spans;
+  // How many.
+  size_t spans_len;
+  // What can be seen around a ray: as many as spans are needed.
+  uint32_t *active;
+  // How many.
+  size_t active_len;
+  // At least one; best is about one for each span.
+  uint32_t *buckets;
+  // How many.
+  size_t buckets_len;
+} patchray_line_memory_f64;
+
+// What the last ray of a scan line left on one surface, for the predicted methods: coherence memory of one thread has a slot per
+// surface. Begin with zeros; from then on it is the library's.
+typedef struct {
+  // Where it was, its point, how that moves, and how that changes.
+  double numbers[18];
+  // The scan line, plus one.
+  uint32_t stamp;
+} patchray_followed_f64;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1278,6 +1572,333 @@ int32_t patchray_options_default_f64(patchray_options_f64 *options);
 
 // As patchray_limits_default_f32, in double precision.
 int32_t patchray_limits_default_f64(patchray_limits_f64 *limits);
+
+// Turns a scene, and its patches if they are not NULL, to a camera, for tracing scan lines of its image. Without
+// patches only clipping can trace it. Counts as for scene_build; sights, runs and first_runs only with patches.
+int32_t patchray_view_build_f32(const patchray_scene_f32 *scene,
+                                const patchray_patches_f32 *patches,
+                                const patchray_camera_f32 *camera,
+                                patchray_view_memory_f32 *memory,
+                                patchray_view_f32 *view);
+
+// Traces a scan line by clipping: of each ray the hit, in codes what patchray_clipping_closest would return, and in works,
+// unless it is NULL, what was done; each has as many slots as the line has rays. Returns PATCHRAY_OK, or a negative code, after
+// which nothing was written but counts. scratch: CLIP words.
+int32_t patchray_clipping_line_f32(const patchray_view_f32 *view,
+                                   const patchray_line_f32 *line,
+                                   patchray_line_memory_f32 *line_memory,
+                                   const patchray_limits_f32 *limits,
+                                   uint64_t *scratch,
+                                   size_t scratch_words,
+                                   patchray_hit_f32 *hits,
+                                   int32_t *codes,
+                                   patchray_work *works);
+
+// The same by the original numerical method. scratch: NEWTON words, as for all newton_..._line.
+int32_t patchray_newton_line_f32(const patchray_view_f32 *view,
+                                 const patchray_line_f32 *line,
+                                 patchray_line_memory_f32 *line_memory,
+                                 const patchray_limits_f32 *limits,
+                                 uint64_t *scratch,
+                                 size_t scratch_words,
+                                 patchray_hit_f32 *hits,
+                                 int32_t *codes,
+                                 patchray_work *works);
+
+// The same by clipping with scan-line coherence; memory as for newton_coherent_closest.
+int32_t patchray_clipping_coherent_line_f32(const patchray_view_f32 *view,
+                                            const patchray_line_f32 *line,
+                                            patchray_line_memory_f32 *line_memory,
+                                            patchray_remembered_f32 *memory,
+                                            size_t memory_len,
+                                            const patchray_limits_f32 *limits,
+                                            uint64_t *scratch,
+                                            size_t scratch_words,
+                                            patchray_hit_f32 *hits,
+                                            int32_t *codes,
+                                            patchray_work *works);
+
+// The same by the improved numerical method; memory as for newton_coherent_closest.
+int32_t patchray_newton_coherent_line_f32(const patchray_view_f32 *view,
+                                          const patchray_line_f32 *line,
+                                          patchray_line_memory_f32 *line_memory,
+                                          patchray_remembered_f32 *memory,
+                                          size_t memory_len,
+                                          const patchray_limits_f32 *limits,
+                                          uint64_t *scratch,
+                                          size_t scratch_words,
+                                          patchray_hit_f32 *hits,
+                                          int32_t *codes,
+                                          patchray_work *works);
+
+// The same by clipping around where the hit is predicted; memory has a slot per surface.
+int32_t patchray_clipping_predicted_line_f32(const patchray_view_f32 *view,
+                                             const patchray_line_f32 *line,
+                                             patchray_line_memory_f32 *line_memory,
+                                             patchray_followed_f32 *memory,
+                                             size_t memory_len,
+                                             const patchray_limits_f32 *limits,
+                                             uint64_t *scratch,
+                                             size_t scratch_words,
+                                             patchray_hit_f32 *hits,
+                                             int32_t *codes,
+                                             patchray_work *works);
+
+// The same by Newton's method from where the hit is predicted, the fastest of all; memory has a slot per surface.
+int32_t patchray_newton_predicted_line_f32(const patchray_view_f32 *view,
+                                           const patchray_line_f32 *line,
+                                           patchray_line_memory_f32 *line_memory,
+                                           patchray_followed_f32 *memory,
+                                           size_t memory_len,
+                                           const patchray_limits_f32 *limits,
+                                           uint64_t *scratch,
+                                           size_t scratch_words,
+                                           patchray_hit_f32 *hits,
+                                           int32_t *codes,
+                                           patchray_work *works);
+
+// As patchray_view_build_f32, of control points with weights.
+int32_t patchray_view_build_f32_weighted(const patchray_scene_f32 *scene,
+                                         const patchray_patches_f32 *patches,
+                                         const patchray_camera_f32 *camera,
+                                         patchray_view_memory_f32 *memory,
+                                         patchray_view_f32 *view);
+
+// As patchray_clipping_line_f32, of control points with weights.
+int32_t patchray_clipping_line_f32_weighted(const patchray_view_f32 *view,
+                                            const patchray_line_f32 *line,
+                                            patchray_line_memory_f32 *line_memory,
+                                            const patchray_limits_f32 *limits,
+                                            uint64_t *scratch,
+                                            size_t scratch_words,
+                                            patchray_hit_f32 *hits,
+                                            int32_t *codes,
+                                            patchray_work *works);
+
+// As patchray_newton_line_f32, of control points with weights.
+int32_t patchray_newton_line_f32_weighted(const patchray_view_f32 *view,
+                                          const patchray_line_f32 *line,
+                                          patchray_line_memory_f32 *line_memory,
+                                          const patchray_limits_f32 *limits,
+                                          uint64_t *scratch,
+                                          size_t scratch_words,
+                                          patchray_hit_f32 *hits,
+                                          int32_t *codes,
+                                          patchray_work *works);
+
+// As patchray_clipping_coherent_line_f32, of control points with weights.
+int32_t patchray_clipping_coherent_line_f32_weighted(const patchray_view_f32 *view,
+                                                     const patchray_line_f32 *line,
+                                                     patchray_line_memory_f32 *line_memory,
+                                                     patchray_remembered_f32 *memory,
+                                                     size_t memory_len,
+                                                     const patchray_limits_f32 *limits,
+                                                     uint64_t *scratch,
+                                                     size_t scratch_words,
+                                                     patchray_hit_f32 *hits,
+                                                     int32_t *codes,
+                                                     patchray_work *works);
+
+// As patchray_newton_coherent_line_f32, of control points with weights.
+int32_t patchray_newton_coherent_line_f32_weighted(const patchray_view_f32 *view,
+                                                   const patchray_line_f32 *line,
+                                                   patchray_line_memory_f32 *line_memory,
+                                                   patchray_remembered_f32 *memory,
+                                                   size_t memory_len,
+                                                   const patchray_limits_f32 *limits,
+                                                   uint64_t *scratch,
+                                                   size_t scratch_words,
+                                                   patchray_hit_f32 *hits,
+                                                   int32_t *codes,
+                                                   patchray_work *works);
+
+// As patchray_clipping_predicted_line_f32, of control points with weights.
+int32_t patchray_clipping_predicted_line_f32_weighted(const patchray_view_f32 *view,
+                                                      const patchray_line_f32 *line,
+                                                      patchray_line_memory_f32 *line_memory,
+                                                      patchray_followed_f32 *memory,
+                                                      size_t memory_len,
+                                                      const patchray_limits_f32 *limits,
+                                                      uint64_t *scratch,
+                                                      size_t scratch_words,
+                                                      patchray_hit_f32 *hits,
+                                                      int32_t *codes,
+                                                      patchray_work *works);
+
+// As patchray_newton_predicted_line_f32, of control points with weights.
+int32_t patchray_newton_predicted_line_f32_weighted(const patchray_view_f32 *view,
+                                                    const patchray_line_f32 *line,
+                                                    patchray_line_memory_f32 *line_memory,
+                                                    patchray_followed_f32 *memory,
+                                                    size_t memory_len,
+                                                    const patchray_limits_f32 *limits,
+                                                    uint64_t *scratch,
+                                                    size_t scratch_words,
+                                                    patchray_hit_f32 *hits,
+                                                    int32_t *codes,
+                                                    patchray_work *works);
+
+// As patchray_view_build_f32, in double precision.
+int32_t patchray_view_build_f64(const patchray_scene_f64 *scene,
+                                const patchray_patches_f64 *patches,
+                                const patchray_camera_f64 *camera,
+                                patchray_view_memory_f64 *memory,
+                                patchray_view_f64 *view);
+
+// As patchray_clipping_line_f32, in double precision.
+int32_t patchray_clipping_line_f64(const patchray_view_f64 *view,
+                                   const patchray_line_f64 *line,
+                                   patchray_line_memory_f64 *line_memory,
+                                   const patchray_limits_f64 *limits,
+                                   uint64_t *scratch,
+                                   size_t scratch_words,
+                                   patchray_hit_f64 *hits,
+                                   int32_t *codes,
+                                   patchray_work *works);
+
+// As patchray_newton_line_f32, in double precision.
+int32_t patchray_newton_line_f64(const patchray_view_f64 *view,
+                                 const patchray_line_f64 *line,
+                                 patchray_line_memory_f64 *line_memory,
+                                 const patchray_limits_f64 *limits,
+                                 uint64_t *scratch,
+                                 size_t scratch_words,
+                                 patchray_hit_f64 *hits,
+                                 int32_t *codes,
+                                 patchray_work *works);
+
+// As patchray_clipping_coherent_line_f32, in double precision.
+int32_t patchray_clipping_coherent_line_f64(const patchray_view_f64 *view,
+                                            const patchray_line_f64 *line,
+                                            patchray_line_memory_f64 *line_memory,
+                                            patchray_remembered_f64 *memory,
+                                            size_t memory_len,
+                                            const patchray_limits_f64 *limits,
+                                            uint64_t *scratch,
+                                            size_t scratch_words,
+                                            patchray_hit_f64 *hits,
+                                            int32_t *codes,
+                                            patchray_work *works);
+
+// As patchray_newton_coherent_line_f32, in double precision.
+int32_t patchray_newton_coherent_line_f64(const patchray_view_f64 *view,
+                                          const patchray_line_f64 *line,
+                                          patchray_line_memory_f64 *line_memory,
+                                          patchray_remembered_f64 *memory,
+                                          size_t memory_len,
+                                          const patchray_limits_f64 *limits,
+                                          uint64_t *scratch,
+                                          size_t scratch_words,
+                                          patchray_hit_f64 *hits,
+                                          int32_t *codes,
+                                          patchray_work *works);
+
+// As patchray_clipping_predicted_line_f32, in double precision.
+int32_t patchray_clipping_predicted_line_f64(const patchray_view_f64 *view,
+                                             const patchray_line_f64 *line,
+                                             patchray_line_memory_f64 *line_memory,
+                                             patchray_followed_f64 *memory,
+                                             size_t memory_len,
+                                             const patchray_limits_f64 *limits,
+                                             uint64_t *scratch,
+                                             size_t scratch_words,
+                                             patchray_hit_f64 *hits,
+                                             int32_t *codes,
+                                             patchray_work *works);
+
+// As patchray_newton_predicted_line_f32, in double precision.
+int32_t patchray_newton_predicted_line_f64(const patchray_view_f64 *view,
+                                           const patchray_line_f64 *line,
+                                           patchray_line_memory_f64 *line_memory,
+                                           patchray_followed_f64 *memory,
+                                           size_t memory_len,
+                                           const patchray_limits_f64 *limits,
+                                           uint64_t *scratch,
+                                           size_t scratch_words,
+                                           patchray_hit_f64 *hits,
+                                           int32_t *codes,
+                                           patchray_work *works);
+
+// As patchray_view_build_f32, in double precision, of control points with weights.
+int32_t patchray_view_build_f64_weighted(const patchray_scene_f64 *scene,
+                                         const patchray_patches_f64 *patches,
+                                         const patchray_camera_f64 *camera,
+                                         patchray_view_memory_f64 *memory,
+                                         patchray_view_f64 *view);
+
+// As patchray_clipping_line_f32, in double precision, of control points with weights.
+int32_t patchray_clipping_line_f64_weighted(const patchray_view_f64 *view,
+                                            const patchray_line_f64 *line,
+                                            patchray_line_memory_f64 *line_memory,
+                                            const patchray_limits_f64 *limits,
+                                            uint64_t *scratch,
+                                            size_t scratch_words,
+                                            patchray_hit_f64 *hits,
+                                            int32_t *codes,
+                                            patchray_work *works);
+
+// As patchray_newton_line_f32, in double precision, of control points with weights.
+int32_t patchray_newton_line_f64_weighted(const patchray_view_f64 *view,
+                                          const patchray_line_f64 *line,
+                                          patchray_line_memory_f64 *line_memory,
+                                          const patchray_limits_f64 *limits,
+                                          uint64_t *scratch,
+                                          size_t scratch_words,
+                                          patchray_hit_f64 *hits,
+                                          int32_t *codes,
+                                          patchray_work *works);
+
+// As patchray_clipping_coherent_line_f32, in double precision, of control points with weights.
+int32_t patchray_clipping_coherent_line_f64_weighted(const patchray_view_f64 *view,
+                                                     const patchray_line_f64 *line,
+                                                     patchray_line_memory_f64 *line_memory,
+                                                     patchray_remembered_f64 *memory,
+                                                     size_t memory_len,
+                                                     const patchray_limits_f64 *limits,
+                                                     uint64_t *scratch,
+                                                     size_t scratch_words,
+                                                     patchray_hit_f64 *hits,
+                                                     int32_t *codes,
+                                                     patchray_work *works);
+
+// As patchray_newton_coherent_line_f32, in double precision, of control points with weights.
+int32_t patchray_newton_coherent_line_f64_weighted(const patchray_view_f64 *view,
+                                                   const patchray_line_f64 *line,
+                                                   patchray_line_memory_f64 *line_memory,
+                                                   patchray_remembered_f64 *memory,
+                                                   size_t memory_len,
+                                                   const patchray_limits_f64 *limits,
+                                                   uint64_t *scratch,
+                                                   size_t scratch_words,
+                                                   patchray_hit_f64 *hits,
+                                                   int32_t *codes,
+                                                   patchray_work *works);
+
+// As patchray_clipping_predicted_line_f32, in double precision, of control points with weights.
+int32_t patchray_clipping_predicted_line_f64_weighted(const patchray_view_f64 *view,
+                                                      const patchray_line_f64 *line,
+                                                      patchray_line_memory_f64 *line_memory,
+                                                      patchray_followed_f64 *memory,
+                                                      size_t memory_len,
+                                                      const patchray_limits_f64 *limits,
+                                                      uint64_t *scratch,
+                                                      size_t scratch_words,
+                                                      patchray_hit_f64 *hits,
+                                                      int32_t *codes,
+                                                      patchray_work *works);
+
+// As patchray_newton_predicted_line_f32, in double precision, of control points with weights.
+int32_t patchray_newton_predicted_line_f64_weighted(const patchray_view_f64 *view,
+                                                    const patchray_line_f64 *line,
+                                                    patchray_line_memory_f64 *line_memory,
+                                                    patchray_followed_f64 *memory,
+                                                    size_t memory_len,
+                                                    const patchray_limits_f64 *limits,
+                                                    uint64_t *scratch,
+                                                    size_t scratch_words,
+                                                    patchray_hit_f64 *hits,
+                                                    int32_t *codes,
+                                                    patchray_work *works);
 
 // A code's name, such as "PATCHRAY_OVERLAP": a string in constant memory, never NULL. 0 is "PATCHRAY_OK", which a miss is
 // too; what no call returns is "unknown".

@@ -3,6 +3,7 @@
 use crate::limits::Limit;
 use crate::ray::RayError;
 use crate::surface::NetError;
+use crate::view::ViewError;
 use core::ffi::{CStr, c_char};
 
 /// What a call returns.
@@ -47,6 +48,10 @@ pub const PATCHRAY_POINT_NOT_FINITE: i32 = -13;
 pub const PATCHRAY_WEIGHT: i32 = -14;
 /// A surface makes more patches than the options allow.
 pub const PATCHRAY_PATCHES: i32 = -15;
+/// A camera's three vectors lie in a plane, or all but.
+pub const PATCHRAY_CAMERA_FLAT: i32 = -16;
+/// A camera is farther away than eight times the scene's size: trace its rays one by one.
+pub const PATCHRAY_CAMERA_FAR: i32 = -17;
 
 /// A coordinate of the ray is NaN.
 pub const PATCHRAY_RAY_NAN: i32 = -21;
@@ -58,6 +63,10 @@ pub const PATCHRAY_RAY_DIRECTION: i32 = -23;
 pub const PATCHRAY_RAY_RANGE: i32 = -24;
 /// t_min or t_max is NaN, or t_min is the larger.
 pub const PATCHRAY_RAY_INTERVAL: i32 = -25;
+/// A ray of a view is more than 45 degrees off its camera's forward: to be traced by itself.
+pub const PATCHRAY_RAY_OUT_OF_VIEW: i32 = -26;
+/// A ray of a scan line is not within the line's x and y.
+pub const PATCHRAY_RAY_OUT_OF_LINE: i32 = -27;
 
 /// The budget of tested surfaces ran out. Of this and all below: neither a hit nor a miss.
 pub const PATCHRAY_GAVE_UP_SURFACES: i32 = -41;
@@ -77,6 +86,8 @@ pub const PATCHRAY_GAVE_UP_BISECTIONS: i32 = -47;
 pub const PATCHRAY_GAVE_UP_PENDING_DOMAINS: i32 = -48;
 /// The list of hits is full; it holds the closest ones.
 pub const PATCHRAY_GAVE_UP_HITS: i32 = -49;
+/// The budget of spans of a scan line ran out.
+pub const PATCHRAY_GAVE_UP_SPANS: i32 = -50;
 
 pub(super) fn of_limit(limit: Limit) -> Code {
     match limit {
@@ -91,8 +102,8 @@ pub(super) fn of_limit(limit: Limit) -> Code {
         Limit::Hits => PATCHRAY_GAVE_UP_HITS,
         Limit::Scratch => PATCHRAY_SCRATCH,
         Limit::Memory => PATCHRAY_MEMORY,
-        // Of scan lines of a view, which this interface does not have.
-        Limit::Spans | Limit::Line => PATCHRAY_TABLES,
+        Limit::Spans => PATCHRAY_GAVE_UP_SPANS,
+        Limit::Line => PATCHRAY_RAY_OUT_OF_LINE,
         Limit::Slot => PATCHRAY_TABLES,
     }
 }
@@ -102,7 +113,18 @@ pub(super) fn of_ray(error: RayError) -> Code {
         RayError::NotANumber => PATCHRAY_RAY_NAN,
         RayError::Infinite => PATCHRAY_RAY_INFINITE,
         RayError::ZeroDirection => PATCHRAY_RAY_DIRECTION,
-        RayError::Unrepresentable | RayError::OutOfView => PATCHRAY_RAY_RANGE,
+        RayError::Unrepresentable => PATCHRAY_RAY_RANGE,
+        RayError::OutOfView => PATCHRAY_RAY_OUT_OF_VIEW,
+    }
+}
+
+pub(super) fn of_view(error: ViewError) -> Code {
+    match error {
+        ViewError::Memory(_) => PATCHRAY_MEMORY,
+        ViewError::Ray(error) => of_ray(error),
+        ViewError::Flat => PATCHRAY_CAMERA_FLAT,
+        ViewError::Far => PATCHRAY_CAMERA_FAR,
+        ViewError::TooLarge => PATCHRAY_TOO_LARGE,
     }
 }
 
@@ -135,10 +157,11 @@ pub extern "C" fn patchray_name(code: i32) -> *const c_char {
     let name = names!(
         PATCHRAY_OK PATCHRAY_HIT PATCHRAY_NULL PATCHRAY_MISALIGNED PATCHRAY_OVERLAP PATCHRAY_COUNT PATCHRAY_LAYOUT_DIFFERS
         PATCHRAY_MEMORY PATCHRAY_SCRATCH PATCHRAY_TOO_LARGE PATCHRAY_OPTION PATCHRAY_TABLES PATCHRAY_DEGREE PATCHRAY_POINTS
-        PATCHRAY_POINT_NOT_FINITE PATCHRAY_WEIGHT PATCHRAY_PATCHES PATCHRAY_RAY_NAN PATCHRAY_RAY_INFINITE
-        PATCHRAY_RAY_DIRECTION PATCHRAY_RAY_RANGE PATCHRAY_RAY_INTERVAL PATCHRAY_GAVE_UP_SURFACES PATCHRAY_GAVE_UP_NODES
+        PATCHRAY_POINT_NOT_FINITE PATCHRAY_WEIGHT PATCHRAY_PATCHES PATCHRAY_CAMERA_FLAT PATCHRAY_CAMERA_FAR PATCHRAY_RAY_NAN PATCHRAY_RAY_INFINITE
+        PATCHRAY_RAY_DIRECTION PATCHRAY_RAY_RANGE PATCHRAY_RAY_INTERVAL PATCHRAY_RAY_OUT_OF_VIEW
+        PATCHRAY_RAY_OUT_OF_LINE PATCHRAY_GAVE_UP_SURFACES PATCHRAY_GAVE_UP_NODES
         PATCHRAY_GAVE_UP_PATCHES PATCHRAY_GAVE_UP_VOXELS PATCHRAY_GAVE_UP_NEWTON_STEPS PATCHRAY_GAVE_UP_CLIP_STEPS
-        PATCHRAY_GAVE_UP_BISECTIONS PATCHRAY_GAVE_UP_PENDING_DOMAINS PATCHRAY_GAVE_UP_HITS
+        PATCHRAY_GAVE_UP_BISECTIONS PATCHRAY_GAVE_UP_PENDING_DOMAINS PATCHRAY_GAVE_UP_HITS PATCHRAY_GAVE_UP_SPANS
     );
     // Each ends with the only 0 that it has.
     CStr::from_bytes_until_nul(name.as_bytes()).unwrap_or(c"unknown").as_ptr()

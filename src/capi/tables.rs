@@ -10,6 +10,7 @@ use crate::point::Point;
 use crate::scalar::Scalar;
 use crate::scene::{Scene, SceneHeader};
 use crate::tree::Tree;
+use crate::view::{View, ViewHeader};
 
 /// What a table is of.
 #[derive(Clone, Copy)]
@@ -18,6 +19,7 @@ pub(super) enum Table {
     Patches = 2,
     Tree = 3,
     Grids = 4,
+    View = 5,
 }
 
 /// What stands in a table's `layout`: version, table, precision, and whether there are weights, each in bits of its own.
@@ -63,6 +65,19 @@ pub(super) unsafe fn scene<'c, P: Point>(
 ) -> Result<Scene<'c, P>, Code> {
     // SAFETY: the caller's.
     let scene = unsafe { lending.read(scene) }?;
+    // SAFETY: the caller's.
+    unsafe { scene_in(lending, &scene) }
+}
+
+/// The same of a copy.
+///
+/// # Safety
+/// As for [`scene`].
+#[inline(always)]
+pub(super) unsafe fn scene_in<'c, P: Point>(
+    lending: &mut Lending,
+    scene: &patchray_scene<P::Scalar>,
+) -> Result<Scene<'c, P>, Code> {
     expect::<P::Scalar>(scene.layout, Table::Scene, P::RATIONAL)?;
     let header = header_of(&scene.frame, &scene.grid);
     // SAFETY: the caller's.
@@ -87,12 +102,64 @@ pub(super) unsafe fn patches<'c, S: Scalar>(
 ) -> Result<(Patches<'c, S>, usize), Code> {
     // SAFETY: the caller's.
     let patches = unsafe { lending.read(patches) }?;
+    // SAFETY: the caller's.
+    unsafe { patches_in(lending, &patches) }
+}
+
+/// The same of a copy.
+///
+/// # Safety
+/// As for [`scene`].
+#[inline(always)]
+pub(super) unsafe fn patches_in<'c, S: Scalar>(
+    lending: &mut Lending,
+    patches: &patchray_patches<S>,
+) -> Result<(Patches<'c, S>, usize), Code> {
     expect::<S>(patches.layout, Table::Patches, false)?;
     // SAFETY: the caller's.
     let slots = unsafe { lending.slots(patches.patches, patches.patches_len) }?;
     // SAFETY: likewise.
     let first = unsafe { lending.slots(patches.first, patches.first_len) }?;
     Ok((Patches::new(slots, first), patches.first_len.saturating_sub(1)))
+}
+
+/// A view, and whether it has patches.
+///
+/// # Safety
+/// As for [`scene`].
+#[inline(always)]
+pub(super) unsafe fn view<'c, P: Point>(
+    lending: &mut Lending,
+    view: *const patchray_view<P::Scalar>,
+) -> Result<(View<'c, P>, bool), Code> {
+    // SAFETY: the caller's.
+    let view = unsafe { lending.read(view) }?;
+    expect::<P::Scalar>(view.layout, Table::View, P::RATIONAL)?;
+    checked_layouts::<P::Scalar>();
+    // SAFETY: both are laid out alike, and any bits are valid.
+    let header = unsafe { core::mem::transmute_copy::<patchray_lens<P::Scalar>, ViewHeader<P::Scalar>>(&view.header) };
+    // SAFETY: the caller's.
+    let scene = unsafe { scene_in::<P>(lending, &view.scene) }?;
+    // SAFETY: likewise.
+    let (patches, _) = unsafe { patches_in(lending, &view.patches) }?;
+    // SAFETY: likewise.
+    let surfaces = unsafe { lending.slots(view.surfaces, view.surfaces_len) }?;
+    // SAFETY: likewise.
+    let sights = unsafe { lending.slots(view.sights, view.sights_len) }?;
+    // SAFETY: likewise.
+    let runs = unsafe { lending.slots(view.runs, view.runs_len) }?;
+    // SAFETY: likewise.
+    let first_runs = unsafe { lending.slots(view.first_runs, view.first_runs_len) }?;
+    Ok((View::new(header, scene, patches, surfaces, sights, runs, first_runs), view.patches.first_len > 0))
+}
+
+/// A view's header in the words of the C interface.
+pub(super) fn view_header_in_c<S: Scalar>(header: &ViewHeader<S>) -> patchray_lens<S> {
+    checked_layouts::<S>();
+    let mut lens = patchray_lens { numbers: [S::ZERO; 16] };
+    // SAFETY: both are laid out alike; a write of the kernel's struct leaves no field unset.
+    unsafe { (&raw mut lens).cast::<ViewHeader<S>>().write(*header) };
+    lens
 }
 
 /// # Safety

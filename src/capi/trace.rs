@@ -1,13 +1,12 @@
 //! The methods: one ray of a call, from addresses to an answer.
 
-use super::lend::{Lending, Place};
+use super::lend::{Lending, Place, Room};
 use super::status::*;
 use super::types::*;
 use super::{scratch, tables};
 use crate::bernstein::Basis;
-use crate::clipper::ClipRoom;
 use crate::limits::{Acceptance, GaveUp, Limits, Work};
-use crate::method::{ScratchView, clipping, clipping_coherent, newton, newton_coherent};
+use crate::method::{clipping, clipping_coherent, newton, newton_coherent};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::scalar::Scalar;
@@ -29,6 +28,7 @@ impl<S: Scalar> patchray_limits<S> {
             nodes: limits.nodes,
             patches: limits.patches,
             voxels: limits.voxels,
+            spans: limits.spans,
             newton_steps: limits.newton_steps,
             clip_steps: limits.clip_steps,
             bisections: limits.bisections,
@@ -38,7 +38,7 @@ impl<S: Scalar> patchray_limits<S> {
 
     /// In the kernel's words.
     #[inline(always)]
-    fn checked(&self) -> Result<Limits<S>, Code> {
+    pub(super) fn checked(&self) -> Result<Limits<S>, Code> {
         if !(self.tolerance.is_finite() && self.critical_factor.is_finite() && self.clip_threshold.is_finite()) {
             return Err(PATCHRAY_OPTION);
         }
@@ -58,11 +58,11 @@ impl<S: Scalar> patchray_limits<S> {
             nodes: self.nodes,
             patches: self.patches,
             voxels: self.voxels,
+            spans: self.spans,
             newton_steps: self.newton_steps,
             clip_steps: self.clip_steps,
             bisections: self.bisections,
             pending_domains: self.pending_domains,
-            ..Limits::default()
         })
     }
 }
@@ -121,13 +121,9 @@ impl<P: Point> Asked<'_, P> {
         place: &Place<patchray_hit<P::Scalar>>,
         work: Work,
     ) -> Code {
-        let (hit, code) = match found {
-            Ok(Some(hit)) => (Some(hit), PATCHRAY_HIT),
-            Ok(None) => (None, PATCHRAY_MISS),
-            Err(GaveUp { limit, best }) => (best, of_limit(limit)),
-        };
+        let (hit, code) = code_of(found);
         // SAFETY: the caller's.
-        unsafe { place.set(hit.into()) };
+        unsafe { place.set(hit) };
         if let Some(place) = &self.work {
             // SAFETY: the caller's.
             unsafe { place.set(work.into()) };
@@ -136,61 +132,44 @@ impl<P: Point> Asked<'_, P> {
     }
 }
 
-type Found<S> = Result<Option<Hit<S>>, GaveUp<S>>;
+/// What a ray came to, in the words of the C interface.
+#[inline(always)]
+pub(super) fn code_of<S: Scalar>(found: Found<S>) -> (patchray_hit<S>, Code) {
+    match found {
+        Ok(Some(hit)) => (Some(hit).into(), PATCHRAY_HIT),
+        Ok(None) => (None.into(), PATCHRAY_MISS),
+        Err(GaveUp { limit, best }) => (best.into(), of_limit(limit)),
+    }
+}
+
+pub(super) type Found<S> = Result<Option<Hit<S>>, GaveUp<S>>;
 type WithTree<S> = (*const patchray_scene<S>, *const patchray_patches<S>, *const patchray_tree<S>);
 type WithGrids<S> = (*const patchray_scene<S>, *const patchray_patches<S>, *const patchray_grids<S>);
 type Out<S> = (*mut patchray_hit<S>, *mut patchray_work);
 
-/// A call with the scratch of the clipping methods: makes sure of all memory, that of `tables` last, before any is written.
+/// A call: makes sure of all memory, that of `tables` last, before any is written; `room` makes its scratch of words.
 ///
 /// # Safety
 /// As for [`clipping_closest`].
 #[inline(always)]
-unsafe fn with_room<P: Point, T>(
+unsafe fn with<P: Point, T, R>(
     scene: *const patchray_scene<P::Scalar>,
     ray: *const patchray_ray<P::Scalar>,
     limits: *const patchray_limits<P::Scalar>,
     (words, words_len): (*mut u64, usize),
     (hit, work): Out<P::Scalar>,
     tables: impl FnOnce(&mut Lending) -> Result<T, Code>,
-    search: impl FnOnce(&Asked<'_, P>, T, &mut ClipRoom<'_, P>, &mut Work) -> Found<P::Scalar>,
+    room: impl FnOnce(Room<u64>) -> Result<R, Code>,
+    search: impl FnOnce(&Asked<'_, P>, T, &mut R, &mut Work) -> Found<P::Scalar>,
 ) -> Result<Code, Code> {
     let mut lending = Lending::new();
     let (hit, words) = (lending.place(hit)?, lending.room(words, words_len)?);
     // SAFETY: the caller's.
     let asked = unsafe { Asked::of(&mut lending, scene, ray, limits, work) }?;
     let tables = tables(&mut lending)?;
-    // SAFETY: the caller's.
-    let mut room = unsafe { scratch::clip::<P>(words) }?;
+    let mut room = room(words)?;
     let mut done = Work::default();
     let found = search(&asked, tables, &mut room, &mut done);
-    // SAFETY: the caller's.
-    Ok(unsafe { asked.answer(found, &hit, done) })
-}
-
-/// The same with the scratch of Newton's methods.
-///
-/// # Safety
-/// As for [`clipping_closest`].
-#[inline(always)]
-unsafe fn with_scratch<P: Point, T>(
-    scene: *const patchray_scene<P::Scalar>,
-    ray: *const patchray_ray<P::Scalar>,
-    limits: *const patchray_limits<P::Scalar>,
-    (words, words_len): (*mut u64, usize),
-    (hit, work): Out<P::Scalar>,
-    tables: impl FnOnce(&mut Lending) -> Result<T, Code>,
-    search: impl FnOnce(&Asked<'_, P>, T, &mut ScratchView<'_, P>, &mut Work) -> Found<P::Scalar>,
-) -> Result<Code, Code> {
-    let mut lending = Lending::new();
-    let (hit, words) = (lending.place(hit)?, lending.room(words, words_len)?);
-    // SAFETY: the caller's.
-    let asked = unsafe { Asked::of(&mut lending, scene, ray, limits, work) }?;
-    let tables = tables(&mut lending)?;
-    // SAFETY: the caller's.
-    let mut scratch = unsafe { scratch::newton::<P>(words) }?;
-    let mut done = Work::default();
-    let found = search(&asked, tables, &mut scratch, &mut done);
     // SAFETY: the caller's.
     Ok(unsafe { asked.answer(found, &hit, done) })
 }
@@ -208,13 +187,14 @@ pub(super) unsafe fn clipping_closest<P: Point>(
 ) -> Result<Code, Code> {
     // SAFETY: the caller's.
     unsafe {
-        with_room::<P, _>(
+        with::<P, _, _>(
             scene,
             ray,
             limits,
             scratch,
             out,
             |_| Ok(()),
+            |words| scratch::clip::<P>(words),
             |asked, (), room, work| {
                 clipping::closest(&asked.scene, &asked.ray, &asked.interval, &asked.limits, room, work)
             },
@@ -234,13 +214,14 @@ pub(super) unsafe fn clipping_any<P: Point>(
 ) -> Result<Code, Code> {
     // SAFETY: the caller's.
     unsafe {
-        with_room::<P, _>(
+        with::<P, _, _>(
             scene,
             ray,
             limits,
             scratch,
             out,
             |_| Ok(()),
+            |words| scratch::clip::<P>(words),
             |asked, (), room, work| {
                 clipping::any_hit(&asked.scene, &asked.ray, &asked.interval, &asked.limits, room, work)
             },
@@ -307,10 +288,22 @@ pub(super) unsafe fn clipping_coherent_closest<P: Point>(
             let memory = lending.memory(memory, memory_len)?;
             Ok((patches, grids, memory))
         };
-        with_room::<P, _>(scene, ray, limits, scratch, out, tables, |asked, (patches, grids, memory), room, work| {
-            let Asked { scene, ray, interval, limits, .. } = asked;
-            clipping_coherent::closest(scene, &patches, &grids, memory, scan_line, ray, interval, limits, room, work)
-        })
+        let room = |words| scratch::clip::<P>(words);
+        with::<P, _, _>(
+            scene,
+            ray,
+            limits,
+            scratch,
+            out,
+            tables,
+            room,
+            |asked, (patches, grids, memory), room, work| {
+                let Asked { scene, ray, interval, limits, .. } = asked;
+                clipping_coherent::closest(
+                    scene, &patches, &grids, memory, scan_line, ray, interval, limits, room, work,
+                )
+            },
+        )
     }
 }
 
@@ -331,7 +324,8 @@ pub(super) unsafe fn newton_closest<P: Point>(
             let tree = tables::tree(lending, tree)?;
             Ok((patches, tree))
         };
-        with_scratch::<P, _>(scene, ray, limits, scratch, out, tables, |asked, (patches, tree), scratch, work| {
+        let room = |words| scratch::newton::<P>(words);
+        with::<P, _, _>(scene, ray, limits, scratch, out, tables, room, |asked, (patches, tree), scratch, work| {
             let Asked { scene, ray, interval, limits, .. } = asked;
             newton::closest(scene, &patches, &tree, ray, interval, limits, scratch, work)
         })
@@ -355,7 +349,8 @@ pub(super) unsafe fn newton_any<P: Point>(
             let tree = tables::tree(lending, tree)?;
             Ok((patches, tree))
         };
-        with_scratch::<P, _>(scene, ray, limits, scratch, out, tables, |asked, (patches, tree), scratch, work| {
+        let room = |words| scratch::newton::<P>(words);
+        with::<P, _, _>(scene, ray, limits, scratch, out, tables, room, |asked, (patches, tree), scratch, work| {
             let Asked { scene, ray, interval, limits, .. } = asked;
             newton::any_hit(scene, &patches, &tree, ray, interval, limits, scratch, work)
         })
@@ -381,13 +376,14 @@ pub(super) unsafe fn newton_coherent_closest<P: Point>(
             let memory = lending.memory(memory, memory_len)?;
             Ok((patches, grids, memory))
         };
-        with_scratch::<P, _>(
+        with::<P, _, _>(
             scene,
             ray,
             limits,
             scratch,
             out,
             tables,
+            |words| scratch::newton::<P>(words),
             |asked, (patches, grids, memory), scratch, work| {
                 let Asked { scene, ray, interval, limits, .. } = asked;
                 newton_coherent::closest(

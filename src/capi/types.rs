@@ -6,10 +6,12 @@
 
 use crate::frame::Frame;
 use crate::grid::GridSlot;
-use crate::method::Remembered;
+use crate::method::{Followed, Remembered};
 use crate::patch::{Parallelepiped, Patch};
 use crate::scalar::Scalar;
 use crate::scene::SurfaceSlot;
+use crate::span::Span;
+use crate::view::{Sight, ViewHeader};
 
 /// The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
 pub const PATCHRAY_LAYOUT: u32 = 1;
@@ -274,6 +276,158 @@ pub struct patchray_grids<S> {
     pub references_len: usize,
 }
 
+/// A pinhole camera: the ray of the image's point (x, y) starts at the eye and has the direction forward + x right + y up.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct patchray_camera<S> {
+    /// Where all rays start.
+    pub eye: [S; 3],
+    /// The direction of the image's middle, (0, 0).
+    pub forward: [S; 3],
+    /// What one unit of x adds.
+    pub right: [S; 3],
+    /// What one unit of y adds.
+    pub up: [S; 3],
+}
+
+/// Where a surface or a patch can be seen: a slot of a view's tables.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct patchray_sight<S> {
+    /// The octagon around it in the image, and its least depth.
+    pub numbers: [S; 9],
+}
+
+/// How a view turns its scene.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct patchray_lens<S> {
+    /// The turned eye, the scene's middle depth, the turned vectors forward, right and up, and the scale.
+    pub numbers: [S; 16],
+}
+
+/// Memory that is lent for a view. Counts say how many slots are lent, and after the call how many are needed; with counts of 0
+/// addresses may be NULL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct patchray_view_memory<S> {
+    /// Numbers of control points.
+    pub points: *mut S,
+    /// How many numbers.
+    pub points_len: usize,
+    /// What is seen of the surfaces.
+    pub surfaces: *mut patchray_sight<S>,
+    /// How many.
+    pub surfaces_len: usize,
+    /// Patches; none of a view without patches, as of the three that follow.
+    pub patches: *mut patchray_patch<S>,
+    /// How many.
+    pub patches_len: usize,
+    /// What is seen of the patches.
+    pub sights: *mut patchray_sight<S>,
+    /// How many.
+    pub sights_len: usize,
+    /// Rows in which runs of 16 patches are seen.
+    pub runs: *mut S,
+    /// How many numbers.
+    pub runs_len: usize,
+    /// Where each surface's runs begin, and where the last one's end.
+    pub first_runs: *mut u32,
+    /// How many.
+    pub first_runs_len: usize,
+}
+
+/// A scene as seen by a camera. What tracing by scan lines needs.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct patchray_view<S> {
+    /// By which version, precision and kind of control points it was made.
+    pub layout: u32,
+    /// How it is turned.
+    pub header: patchray_lens<S>,
+    /// The scene, its control points turned.
+    pub scene: patchray_scene<S>,
+    /// The patches, turned; none of a view without patches.
+    pub patches: patchray_patches<S>,
+    /// What is seen of the surfaces.
+    pub surfaces: *const patchray_sight<S>,
+    /// How many.
+    pub surfaces_len: usize,
+    /// What is seen of the patches.
+    pub sights: *const patchray_sight<S>,
+    /// How many.
+    pub sights_len: usize,
+    /// Rows in which runs of 16 patches are seen.
+    pub runs: *const S,
+    /// How many numbers.
+    pub runs_len: usize,
+    /// Where each surface's runs begin, and where the last one's end.
+    pub first_runs: *const u32,
+    /// How many.
+    pub first_runs_len: usize,
+}
+
+/// Where in a scan line a surface or a patch can be seen: a slot of memory that is lent for a line.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct patchray_span<S> {
+    /// The least and the largest x, its least depth, and its surface's.
+    pub numbers: [S; 4],
+    /// Its surface and patch, the next one, and the bucket in which it ends.
+    pub counts: [u32; 4],
+}
+
+/// Memory that is lent for tracing a scan line, of one thread. Begin with zeros; from then on it is the library's, and may be lent
+/// for any other line. On PATCHRAY_MEMORY the counts say how many slots are needed: of no line more than the view has patches, or
+/// surfaces if it has no patches.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct patchray_line_memory<S> {
+    /// What can be seen in the line.
+    pub spans: *mut patchray_span<S>,
+    /// How many.
+    pub spans_len: usize,
+    /// What can be seen around a ray: as many as spans are needed.
+    pub active: *mut u32,
+    /// How many.
+    pub active_len: usize,
+    /// At least one; best is about one for each span.
+    pub buckets: *mut u32,
+    /// How many.
+    pub buckets_len: usize,
+}
+
+/// What the last ray of a scan line left on one surface, for the predicted methods: coherence memory of one thread has a slot per
+/// surface. Begin with zeros; from then on it is the library's.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct patchray_followed<S> {
+    /// Where it was, its point, how that moves, and how that changes.
+    pub numbers: [S; 18],
+    /// The scan line, plus one.
+    pub stamp: u32,
+}
+
+/// The rays of a scan line of a view.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct patchray_line<S> {
+    /// x and y of each ray's point of the image: best from one end of the line to the other.
+    pub places: *const S,
+    /// How many numbers: two for each ray.
+    pub places_len: usize,
+    /// The least and the largest x of them all.
+    pub x: [S; 2],
+    /// The least and the largest y; both the same where all rays are in one row.
+    pub y: [S; 2],
+    /// The least t that counts, such as 0.
+    pub t_min: S,
+    /// The largest t that counts, such as INFINITY.
+    pub t_max: S,
+    /// Numbers the line, from 0 to 0xfffffffe: a number that no earlier line with this coherence memory had.
+    pub number: u32,
+}
+
 /// A ray `origin + t   direction`, of which t_min to t_max counts. The direction need not be of unit length.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -331,6 +485,8 @@ pub struct patchray_limits<S> {
     pub patches: u32,
     /// Budget: voxels visited.
     pub voxels: u32,
+    /// Budget: spans of a scan line visited.
+    pub spans: u32,
     /// Budget: Newton iterations.
     pub newton_steps: u32,
     /// Budget: clips.
@@ -370,7 +526,7 @@ counters! {
     patches_tested,
     /// Voxels visited.
     voxels_visited,
-    /// Of scan lines of a view; 0 here.
+    /// Spans of a scan line visited.
     spans_visited,
     /// Newton starts.
     newton_starts,
@@ -421,6 +577,10 @@ pub(super) const fn checked_layouts<S: Scalar>() {
         assert!(alike::<patchray_patch<S>, Patch<S>>());
         assert!(alike::<patchray_node<S>, Parallelepiped<S>>());
         assert!(alike::<patchray_remembered<S>, Remembered<S>>());
+        assert!(alike::<patchray_sight<S>, Sight<S>>());
+        assert!(alike::<patchray_lens<S>, ViewHeader<S>>());
+        assert!(alike::<patchray_span<S>, Span<S>>());
+        assert!(alike::<patchray_followed<S>, Followed<S>>());
     }
 }
 

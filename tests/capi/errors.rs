@@ -10,7 +10,7 @@ use patchray_host::scene::model::Model;
 use patchray_host::scene::shapes::{bumpy, single};
 use std::ffi::CStr;
 
-fn model() -> Model {
+pub(crate) fn model() -> Model {
     Model::numbered(vec![
         bumpy(1, [3, 3], [0.0; 3], 1.0, 0.3),
         bumpy(2, [2, 2], [1.0, 0.0, 0.5], 1.0, 0.3),
@@ -37,11 +37,11 @@ fn prepared<P: InC>() -> Prepared<P::Scalar> {
 }
 
 /// An address one byte on.
-fn off<T>(address: *const T) -> *const T {
+pub(crate) fn off<T>(address: *const T) -> *const T {
     address.wrapping_byte_add(1)
 }
 
-fn off_mut<T>(address: *mut T) -> *mut T {
+pub(crate) fn off_mut<T>(address: *mut T) -> *mut T {
     address.wrapping_byte_add(1)
 }
 
@@ -64,7 +64,7 @@ fn refused<P: InC>(
     assert!(prepared.hit.t == mark && prepared.work.patches_tested == 77, "{} with {what} wrote", method.name);
 }
 
-fn name(code: i32) -> &'static str {
+pub(crate) fn name(code: i32) -> &'static str {
     // SAFETY: a string that is never freed.
     unsafe { CStr::from_ptr(patchray_name(code)) }.to_str().unwrap()
 }
@@ -72,7 +72,7 @@ fn name(code: i32) -> &'static str {
 #[test]
 fn codes_have_names_of_their_own() {
     let names: Vec<_> = (-60..=1).filter_map(|code| Some(name(code)).filter(|name| *name != "unknown")).collect();
-    assert_eq!(names.len(), 31);
+    assert_eq!(names.len(), 36);
     let unique: std::collections::BTreeSet<_> = names.iter().collect();
     assert_eq!(unique.len(), names.len());
     assert_eq!((name(PATCHRAY_OVERLAP), name(i32::MIN), name(2)), ("PATCHRAY_OVERLAP", "unknown", "unknown"));

@@ -327,6 +327,11 @@ impl<S: Scalar> Prepared<S> {
         }
     }
 
+    /// How many surfaces the scene has.
+    pub fn surfaces(&self) -> usize {
+        self.surfaces
+    }
+
     /// Coherence memory as at first.
     pub fn forget(&mut self) {
         self.memory.fill(0);

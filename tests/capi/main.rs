@@ -9,4 +9,9 @@
 mod common;
 mod errors;
 mod lent;
+mod lent_lines;
+#[path = "../views/rooms.rs"]
+#[allow(dead_code)] // What other suites take of it.
+mod rooms;
 mod same_bits;
+mod views;

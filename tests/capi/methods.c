@@ -1,4 +1,5 @@
-// The teapot in 64 x 64 rays by every method and in both precisions: prepared in lent memory, traced, and of each a line
+// The teapot in 64 x 64 rays by every method and in both precisions: prepared in lent memory, traced ray by ray and by scan
+// lines, and of each a line
 // with a hash of all hits and counters, to be compared with the one that Rust finds. For the host and for bare metal.
 
 #include "patchray.h"
@@ -6,7 +7,7 @@
 #include "report.h"
 
 // What all that is prepared lies in: taken from the front, and given back as a whole.
-static uint64_t pool[300000];
+static uint64_t pool[330000];
 static size_t taken;
 
 static void *take(size_t bytes)
@@ -26,6 +27,7 @@ static void *take(size_t bytes)
 #define WORDS(kind) PATCHRAY_##kind##_CUBIC_WORDS_F32
 #include "precision.h"
 #include "prepare.h"
+#include "lines.h"
 #undef REAL
 #undef NAME
 #undef PRECISION
@@ -37,6 +39,7 @@ static void *take(size_t bytes)
 #define WORDS(kind) PATCHRAY_##kind##_CUBIC_WORDS_F64
 #include "precision.h"
 #include "prepare.h"
+#include "lines.h"
 
 int main(void)
 {
@@ -44,5 +47,5 @@ int main(void)
         put("library and header differ\n");
         return 1;
     }
-    return run_f32() && run_f64() ? 0 : 1;
+    return run_f32() && run_lines_f32() && run_f64() && run_lines_f64() ? 0 : 1;
 }

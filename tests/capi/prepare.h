@@ -1,6 +1,7 @@
-// How methods.c prepares the teapot in one precision, and traces it by all methods. Included after precision.h.
+// How methods.c prepares the teapot in one precision, and traces it ray by ray by all methods. Included after precision.h.
 
-static bool NAME(prepare)(NAME(prepared) * all)
+// A scene and its patches, with trees if they are wanted.
+static bool NAME(prepare_patches)(NAME(prepared) * all, NAME(patchray_tree) * tree)
 {
     static NAME(patchray_net) nets[SURFACES];
     static REAL points[SURFACES][48];
@@ -26,17 +27,21 @@ static bool NAME(prepare)(NAME(prepared) * all)
 
     NAME(patchray_patches_memory) of_patches = {NULL, 0, NULL, 0, NULL, 0, NULL, 0, 0};
     int32_t code = NAME(patchray_patches_build)(&all->scene, NULL, scratch, WORDS(SUBDIVIDE), &of_patches, &all->patches,
-                                                &all->tree);
+                                                tree);
     if (code != PATCHRAY_MEMORY)
         return is_ok("asking for patches", code) && false;
     of_patches.patches = (NAME(patchray_patch) *)take(of_patches.patches_len * sizeof *of_patches.patches);
     of_patches.first = (uint32_t *)take(of_patches.first_len * sizeof *of_patches.first);
     of_patches.nodes = (NAME(patchray_node) *)take(of_patches.nodes_len * sizeof *of_patches.nodes);
     of_patches.links = (uint32_t *)take(of_patches.links_len * sizeof *of_patches.links);
-    code = NAME(patchray_patches_build)(&all->scene, NULL, scratch, WORDS(SUBDIVIDE), &of_patches, &all->patches, &all->tree);
-    if (!is_ok("patches", code))
-        return false;
+    code = NAME(patchray_patches_build)(&all->scene, NULL, scratch, WORDS(SUBDIVIDE), &of_patches, &all->patches, tree);
+    return is_ok("patches", code);
+}
 
+static bool NAME(prepare)(NAME(prepared) * all)
+{
+    if (!NAME(prepare_patches)(all, &all->tree))
+        return false;
     NAME(patchray_grids_memory) of_grids = {NULL, 0, NULL, 0, NULL, 0};
     if (NAME(patchray_grids_build)(&all->patches, NULL, &of_grids, &all->grids) != PATCHRAY_MEMORY)
         return false;

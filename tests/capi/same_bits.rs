@@ -3,6 +3,8 @@
 
 use crate::common::{self, Kind, hard_surfaces};
 use crate::lent::{InC, Prepared};
+use crate::lent_lines::Views;
+use crate::views;
 use patchray::capi::*;
 use patchray::limits::{GaveUp, Limits, Work};
 use patchray::method::{ClipScratch, Remembered, Scratch, clipping, clipping_coherent, newton, newton_coherent};
@@ -59,7 +61,7 @@ impl<P: Kind> InRust<P> {
 }
 
 /// A hit's words, as they are hashed; `None` has none.
-fn words<S: Scalar>(hit: Option<Hit<S>>) -> Vec<u32> {
+pub(crate) fn words<S: Scalar>(hit: Option<Hit<S>>) -> Vec<u32> {
     let Some(Hit { t, u, v, surface, grazing }) = hit else {
         return vec![];
     };
@@ -73,21 +75,24 @@ fn words<S: Scalar>(hit: Option<Hit<S>>) -> Vec<u32> {
     numbers.chain([surface, u32::from(grazing)]).collect()
 }
 
+/// What a hash begins with.
+pub(crate) const START: u64 = 0xcbf2_9ce4_8422_2325;
+
 /// FNV-1a over the bytes of words, the least first.
-fn fold(hash: &mut u64, words: impl IntoIterator<Item = u32>) {
+pub(crate) fn fold(hash: &mut u64, words: impl IntoIterator<Item = u32>) {
     for byte in words.into_iter().flat_map(u32::to_le_bytes) {
         *hash = (*hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
     }
 }
 
 /// The lines of `methods.c`.
-fn lines<P: InC>(precision: &str, out: &mut String) {
+fn lines<P: Views>(precision: &str, out: &mut String) {
     let model = teapot_in_float();
     let (mut rust, mut c) = (InRust::<P>::of(&model), Prepared::of::<P>(&model));
     for (number, method) in P::METHODS.iter().take(4).enumerate() {
         rust.memory.fill(Remembered::EMPTY);
         c.forget();
-        let (mut hash, mut hash_in_c, mut hits) = (0xcbf2_9ce4_8422_2325, 0xcbf2_9ce4_8422_2325, 0);
+        let (mut hash, mut hash_in_c, mut hits) = (START, START, 0);
         for (row, column) in (0..64_u32).flat_map(|row| (0..64_u32).map(move |column| (row, column))) {
             let (x, y) = ((16.0 * f64::from(column) - 504.0) / 512.0, (504.0 - 16.0 * f64::from(row)) / 512.0);
             let direction = [-222.75 + 68.0 * x - 24.0 * y, 297.0 + 51.0 * x + 32.0 * y, -198.0 + 75.0 * y];
@@ -114,6 +119,7 @@ fn lines<P: InC>(precision: &str, out: &mut String) {
         assert_eq!(hash, hash_in_c, "{} in {precision}", method.name);
         *out += &format!("{} {precision} {hits} {hash:x}\n", method.name);
     }
+    views::lines::<P>(&model, precision, out);
 }
 
 #[test]

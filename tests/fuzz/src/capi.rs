@@ -7,18 +7,21 @@
 
 mod arguments;
 mod field;
+mod lines;
 mod rust;
 
 use crate::bytes::Bytes;
 use crate::common::Kind;
 use crate::input::Case;
-use crate::lent::InC;
+use crate::lent_lines::Views;
 use crate::scribble::Slot;
 use arguments::Prepared;
 use field::{Call, Field};
+use lines::Lines;
 use patchray::capi::*;
 use patchray::point::{Plain, Weighted};
 use patchray_host::scene::trace::Precision;
+use std::ops::Range;
 
 pub(crate) fn check(bytes: &[u8]) {
     let mut bytes = Bytes::new(bytes);
@@ -36,13 +39,15 @@ pub(crate) fn check(bytes: &[u8]) {
 const OF_ADDRESSES: [i32; 4] = [PATCHRAY_NULL, PATCHRAY_MISALIGNED, PATCHRAY_OVERLAP, PATCHRAY_COUNT];
 
 /// Codes that say what is wrong with what stands there; any of these may be seen first.
-const OF_CONTENTS: [i32; 11] = [
+const OF_CONTENTS: [i32; 13] = [
     PATCHRAY_LAYOUT_DIFFERS,
     PATCHRAY_OPTION,
     PATCHRAY_DEGREE,
     PATCHRAY_POINTS,
     PATCHRAY_POINT_NOT_FINITE,
     PATCHRAY_WEIGHT,
+    PATCHRAY_CAMERA_FLAT,
+    PATCHRAY_CAMERA_FAR,
     PATCHRAY_RAY_NAN,
     PATCHRAY_RAY_INFINITE,
     PATCHRAY_RAY_DIRECTION,
@@ -50,14 +55,34 @@ const OF_CONTENTS: [i32; 11] = [
     PATCHRAY_RAY_INTERVAL,
 ];
 
-/// The functions: three preparations, the methods, all hits, the normal.
+/// The functions: three preparations, the methods, all hits, the normal; and from `LINES` on views and their lines.
 const FUNCTIONS: u8 = 11;
+const LINES: u8 = 110;
 
-fn of_kind<P: InC + Kind + Slot>(case: &Case, function: u8, mut bytes: Bytes<'_>) {
+fn of_kind<P: Views + Kind + Slot>(case: &Case, function: u8, mut bytes: Bytes<'_>) {
     // As it is meant, or with anything in it.
-    let spoilt = function >= 128;
-    let function = usize::from(function % FUNCTIONS);
+    let (spoilt, function) = (function >= 128, function % 128);
     let mut field = Field::new();
+    if let Some(number) = function.checked_sub(LINES) {
+        let Some(mut lines) = Lines::<P>::of(case, usize::from(number % lines::FUNCTIONS), &mut field, &mut bytes)
+        else {
+            return;
+        };
+        if !spoilt {
+            return lines.as_in_rust(case);
+        }
+        lines.scribble(&mut bytes);
+        let mut call = Call::new(&field, &mut bytes);
+        lines.spoil(&mut call);
+        let faults = call.faults();
+        // SAFETY: as below.
+        let code = refused_or_within(&field, &faults, &lines.written, None, || unsafe { lines.call() });
+        if code == PATCHRAY_OK {
+            lines.within_limits();
+        }
+        return;
+    }
+    let function = usize::from(function % FUNCTIONS);
     let Some(mut prepared) = Prepared::<P>::of(case, function, &mut field, &mut bytes) else {
         return;
     };
@@ -68,10 +93,25 @@ fn of_kind<P: InC + Kind + Slot>(case: &Case, function: u8, mut bytes: Bytes<'_>
     let mut call = Call::new(&field, &mut bytes);
     prepared.spoil(function, &mut call);
     let faults = call.faults();
-    let before = field.copy();
+    let why = prepared.says_why(function);
     // SAFETY: each address is null, misaligned, or leads to memory of the field as large as said, and structs that hold
     // addresses hold such.
-    let code = unsafe { prepared.call(function) };
+    let code = refused_or_within(&field, &faults, &prepared.written, why, || unsafe { prepared.call(function) });
+    if (PATCHRAY_MISS..=PATCHRAY_HIT).contains(&code) {
+        prepared.within_limits(function);
+    }
+}
+
+/// The code of a call, which refuses what is wrong, and writes nothing but what it may; and of a refusal nothing but `why`.
+fn refused_or_within(
+    field: &Field,
+    faults: &[i32],
+    written: &[Range<usize>],
+    why: Option<Range<usize>>,
+    call: impl FnOnce() -> i32,
+) -> i32 {
+    let before = field.copy();
+    let code = call();
     let changed = field.changed(&before);
     // SAFETY: it is a string for each code.
     let name = unsafe { std::ffi::CStr::from_ptr(patchray_name(code)) }.to_str().expect("a name");
@@ -85,15 +125,10 @@ fn of_kind<P: InC + Kind + Slot>(case: &Case, function: u8, mut bytes: Bytes<'_>
     // Control points are looked at where lent memory has been cleared.
     let of_points = [PATCHRAY_POINT_NOT_FINITE, PATCHRAY_WEIGHT].contains(&code);
     let refused = OF_ADDRESSES.contains(&code) || OF_CONTENTS.contains(&code) && !of_points;
+    let allowed = if refused { why.as_slice() } else { written };
     for at in changed {
-        let lent = if refused { prepared.says_why(function) } else { None };
-        let allowed = if refused { lent.as_slice() } else { &prepared.written };
-        assert!(
-            allowed.iter().any(|range| range.contains(&at)),
-            "{name}: byte {at:#x} was written, beyond {allowed:x?}"
-        );
+        let known = allowed.iter().any(|range| range.contains(&at));
+        assert!(known, "{name}: byte {at:#x} was written, beyond {allowed:x?}");
     }
-    if (PATCHRAY_MISS..=PATCHRAY_HIT).contains(&code) {
-        prepared.within_limits(function);
-    }
+    code
 }

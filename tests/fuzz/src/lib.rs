@@ -18,6 +18,10 @@ mod rooms;
 #[allow(dead_code, unreachable_pub, unsafe_code, clippy::type_complexity)] // Likewise, and of addresses.
 #[path = "../../capi/lent.rs"]
 mod lent;
+#[cfg(feature = "capi")]
+#[allow(unreachable_pub, unsafe_code, clippy::type_complexity)] // Likewise.
+#[path = "../../capi/lent_lines.rs"]
+mod lent_lines;
 
 mod bytes;
 mod claims;

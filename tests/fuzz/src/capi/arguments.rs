@@ -7,9 +7,11 @@ use crate::input::{Case, limits, subdivision};
 use crate::lent::{Arguments, InC, Method, WORDS, no_memory};
 use crate::scribble::{Slot, scribble};
 use patchray::capi::*;
+use patchray::frame::PADDING;
 use patchray::limits::{Acceptance, Limits};
 use patchray::method::Remembered;
 use patchray::scalar::Scalar;
+use patchray::subdivide::Subdivision;
 use std::ops::Range;
 
 /// Few, so that all fits into a field.
@@ -31,7 +33,7 @@ pub(super) struct Prepared<P: InC> {
     tree: *mut patchray_tree<P::Scalar>,
     pub(super) grids_memory: *mut patchray_grids_memory<P::Scalar>,
     grids: *mut patchray_grids<P::Scalar>,
-    scratch: *mut u64,
+    pub(super) scratch: *mut u64,
     pub(super) scratch_words: usize,
     pub(super) memory: *mut patchray_remembered<P::Scalar>,
     pub(super) memory_len: usize,
@@ -72,6 +74,7 @@ pub(super) fn limits_in_c<S: Scalar>(limits: &Limits<S>) -> patchray_limits<S> {
         nodes: limits.nodes,
         patches: limits.patches,
         voxels: limits.voxels,
+        spans: limits.spans,
         newton_steps: limits.newton_steps,
         clip_steps: limits.clip_steps,
         bisections: limits.bisections,
@@ -83,7 +86,7 @@ pub(super) fn limits_in_c<S: Scalar>(limits: &Limits<S>) -> patchray_limits<S> {
 ///
 /// # Safety
 /// So many can be read and written there, and hold numbers of 4 or 8 bytes and nothing else.
-unsafe fn words<'w, T>(place: *mut T, count: usize) -> &'w mut [u32] {
+pub(super) unsafe fn words<'w, T>(place: *mut T, count: usize) -> &'w mut [u32] {
     if place.is_null() {
         // Of a table that this function does not take.
         return &mut [];
@@ -314,6 +317,7 @@ impl<P: InC + Kind + Slot> Prepared<P> {
             &mut limits.nodes,
             &mut limits.patches,
             &mut limits.voxels,
+            &mut limits.spans,
             &mut limits.newton_steps,
             &mut limits.clip_steps,
             &mut limits.bisections,
@@ -425,7 +429,7 @@ impl<P: InC + Kind + Slot> Prepared<P> {
 
     /// # Safety
     /// See [`Prepared::spoil_trace`].
-    unsafe fn spoil_scene(&mut self, call: &mut Call<'_, '_, '_>) {
+    pub(super) unsafe fn spoil_scene(&mut self, call: &mut Call<'_, '_, '_>) {
         // SAFETY: the caller's.
         let scene = unsafe { &mut *self.scene };
         let (points, len) = call.slots::<_, P>(scene.points.cast_mut(), scene.points_len, false);
@@ -441,7 +445,7 @@ impl<P: InC + Kind + Slot> Prepared<P> {
 
     /// # Safety
     /// See [`Prepared::spoil_trace`].
-    unsafe fn spoil_patches(&mut self, call: &mut Call<'_, '_, '_>) {
+    pub(super) unsafe fn spoil_patches(&mut self, call: &mut Call<'_, '_, '_>) {
         // SAFETY: the caller's.
         let patches = unsafe { &mut *self.patches };
         let (slots, len) = call.many(patches.patches.cast_mut(), patches.patches_len, false);
@@ -449,6 +453,16 @@ impl<P: InC + Kind + Slot> Prepared<P> {
         let (first, len) = call.many(patches.first.cast_mut(), patches.first_len, false);
         (patches.first, patches.first_len) = (first, len);
         self.patches = call.holder(self.patches, false);
+    }
+
+    /// How surfaces are divided.
+    ///
+    /// # Safety
+    /// Options are in their place.
+    pub(super) unsafe fn subdivision(&self) -> Subdivision<P::Scalar> {
+        // SAFETY: the caller's.
+        let &patchray_options { flatness, depth, patches_per_surface, .. } = unsafe { &*self.options };
+        Subdivision { flatness, depth, patches_per_surface, padding: PADDING }
     }
 
     /// Where a preparation that is refused names the surface.
@@ -467,17 +481,22 @@ impl<P: InC + Kind + Slot> Prepared<P> {
             return;
         }
         // SAFETY: the call had them read and written there.
-        let (work, limits) = unsafe { (&*self.work, &*self.limits) };
-        for (count, budget) in [
-            (work.surfaces_tested, limits.surfaces),
-            (work.nodes_visited, limits.nodes),
-            (work.patches_tested, limits.patches),
-            (work.voxels_visited, limits.voxels),
-            (work.newton_steps, limits.newton_steps),
-            (work.clip_steps, limits.clip_steps),
-            (work.bisections, limits.bisections),
-        ] {
-            assert!(count <= budget, "{work:?}, by {limits:?}");
-        }
+        unsafe { within(&*self.work, &*self.limits) };
+    }
+}
+
+/// No counter is beyond its budget.
+pub(super) fn within<S: Scalar>(work: &patchray_work, limits: &patchray_limits<S>) {
+    for (count, budget) in [
+        (work.surfaces_tested, limits.surfaces),
+        (work.nodes_visited, limits.nodes),
+        (work.patches_tested, limits.patches),
+        (work.voxels_visited, limits.voxels),
+        (work.spans_visited, limits.spans),
+        (work.newton_steps, limits.newton_steps),
+        (work.clip_steps, limits.clip_steps),
+        (work.bisections, limits.bisections),
+    ] {
+        assert!(count <= budget, "{work:?}, by {limits:?}");
     }
 }

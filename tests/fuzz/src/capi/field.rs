@@ -183,6 +183,42 @@ impl<'f, 'c, 'b> Call<'f, 'c, 'b> {
         (first, count)
     }
 
+    /// How many pieces were named.
+    pub(super) fn len(&self) -> usize {
+        self.named.len()
+    }
+
+    /// Forgets all pieces but the first ones.
+    pub(super) fn truncate(&mut self, len: usize) {
+        self.named.truncate(len);
+    }
+
+    /// As many, or fewer, or more than any memory holds.
+    pub(super) fn fewer_or_endless(&mut self, count: usize) -> usize {
+        match self.bytes.below(16) {
+            13 => count.saturating_sub(1 + self.bytes.below(4)),
+            14 => 0,
+            15 => isize::MAX as usize - self.bytes.below(64),
+            _ => count,
+        }
+    }
+
+    /// Slots of a count that is said elsewhere, and no more than there are.
+    pub(super) fn fixed<T>(&mut self, first: *mut T, count: usize, written: bool) -> *mut T {
+        let first = self.address(first, count.saturating_mul(size_of::<T>()));
+        self.note::<T>(first.addr(), count, written);
+        first
+    }
+
+    /// The same, to be written, where null says that there are none.
+    pub(super) fn fixed_if_any<T>(&mut self, first: *mut T, count: usize) -> *mut T {
+        let first = self.fixed(first, count, true);
+        if first.is_null() && count > 0 {
+            self.named.pop();
+        }
+        first
+    }
+
     /// What is wrong with all that was named, as codes; of each kind once.
     pub(super) fn faults(&self) -> Vec<i32> {
         let mut faults = vec![];

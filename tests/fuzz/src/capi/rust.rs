@@ -9,12 +9,10 @@ use crate::ready::{Takes, prepare_within};
 use crate::scribble::Slot;
 use patchray::bernstein::Basis;
 use patchray::capi::*;
-use patchray::frame::PADDING;
 use patchray::limits::{Acceptance, Limits};
 use patchray::method::Remembered;
 use patchray::ray::{Hit, Interval};
 use patchray::scalar::Scalar;
-use patchray::subdivide::Subdivision;
 use std::ffi::CStr;
 
 /// The ways of the functions that find the closest hit, then of those that find any.
@@ -25,13 +23,7 @@ impl<P: InC + Kind + Slot> Prepared<P> {
     /// Calls a function with all as it is to be, and asks the same of Rust.
     pub(super) fn as_in_rust(&mut self, case: &Case, function: usize) {
         // SAFETY: options are in their place.
-        let options = unsafe { &*self.options };
-        let subdivision = Subdivision {
-            flatness: options.flatness,
-            depth: options.depth,
-            patches_per_surface: options.patches_per_surface,
-            padding: PADDING,
-        };
+        let subdivision = unsafe { self.subdivision() };
         let way = function.checked_sub(3).and_then(|number| WAYS.get(number).copied());
         let takes = match (function, way) {
             (1, _) => Takes { patches: true, tree: true, grids: false },
@@ -119,7 +111,7 @@ impl<P: InC + Kind + Slot> Prepared<P> {
     }
 
     /// Whether its scratch is for cubic surfaces, and a surface is not.
-    fn is_short_of(&self, case: &Case) -> bool {
+    pub(super) fn is_short_of(&self, case: &Case) -> bool {
         case.model.surfaces.iter().any(|surface| surface.degree_u.max(surface.degree_v) > 3)
             && self.scratch_words != WORDS
     }
@@ -148,12 +140,12 @@ impl<P: InC + Kind + Slot> Prepared<P> {
     }
 }
 
-fn in_c<S>(Hit { t, u, v, surface, grazing }: Hit<S>) -> patchray_hit<S> {
+pub(super) fn in_c<S>(Hit { t, u, v, surface, grazing }: Hit<S>) -> patchray_hit<S> {
     patchray_hit { t, u, v, surface, grazing: u32::from(grazing) }
 }
 
 /// The code says what the answer is.
-fn is_answered<S: Scalar>(code: i32, answer: &Answer<S>) {
+pub(super) fn is_answered<S: Scalar>(code: i32, answer: &Answer<S>) {
     // SAFETY: it is a string for each code.
     let name = unsafe { CStr::from_ptr(patchray_name(code)) }.to_str().expect("a name");
     match answer {
@@ -166,7 +158,7 @@ fn is_answered<S: Scalar>(code: i32, answer: &Answer<S>) {
     }
 }
 
-fn limits_in_rust<S: Scalar>(limits: &patchray_limits<S>) -> Limits<S> {
+pub(super) fn limits_in_rust<S: Scalar>(limits: &patchray_limits<S>) -> Limits<S> {
     Limits {
         newton_iterations: limits.newton_iterations,
         newton_starts: limits.newton_starts,
@@ -183,10 +175,10 @@ fn limits_in_rust<S: Scalar>(limits: &patchray_limits<S>) -> Limits<S> {
         nodes: limits.nodes,
         patches: limits.patches,
         voxels: limits.voxels,
+        spans: limits.spans,
         newton_steps: limits.newton_steps,
         clip_steps: limits.clip_steps,
         bisections: limits.bisections,
         pending_domains: limits.pending_domains,
-        ..Limits::default()
     }
 }
