@@ -105,10 +105,10 @@ pub struct Frame<S> {
     unscale: S,
     /// Where the nets' coordinates are 0, in the caller's coordinates.
     origin: [S; 3],
-    /// The nets' largest |coordinate|.
-    reach: S,
     /// The box of the control points, in the nets' coordinates, padded.
     bounds: Aabb<S>,
+    /// The nets' largest |coordinate|.
+    reach: S,
     /// The diagonal of the unpadded box, in the frame.
     diagonal: S,
     /// Caller's coordinates times 2^`exponent` are the frame's.
@@ -129,8 +129,8 @@ impl<S: Scalar> Frame<S> {
             scale,
             unscale: S::ONE.times_power_of_two(-exponent),
             origin: [S::ZERO; 3],
-            reach,
             bounds: bounds.padded(reach * S::EPSILON * S::from_u32(PADDING)),
+            reach,
             diagonal: inside.diagonal(),
         }
     }
@@ -148,7 +148,7 @@ impl<S: Scalar> Frame<S> {
     /// box; the nets' largest |coordinate|, and the diagonal of the box in the frame; and [`Frame::exponent`].
     pub const fn from_numbers(scales: [S; 2], corners: [[S; 3]; 3], sizes: [S; 2], exponent: i32) -> Self {
         let ([scale, unscale], [origin, low, high], [reach, diagonal]) = (scales, corners, sizes);
-        Frame { exponent, scale, unscale, origin, reach, bounds: Aabb { low, high }, diagonal }
+        Frame { scale, unscale, origin, bounds: Aabb { low, high }, reach, diagonal, exponent }
     }
 
     /// What [`Frame::from_numbers`] takes.

@@ -59,13 +59,8 @@
 //!
 //! The modules stand in the order in which data flows; each knows only those above it.
 
-/// The version of what slots hold: of the order and the meaning of the numbers that the slots' `from_numbers` take. Tables
-/// that were written for another version are not to be read; those that `patchray bake` writes then do not compile:
-///
-/// ```compile_fail
-/// const _: () = assert!(patchray::LAYOUT == 0, "these tables were baked for another version of patchray");
-/// ```
-pub const LAYOUT: u32 = 1;
+pub mod layout;
+pub use layout::LAYOUT;
 
 pub mod story;
 

@@ -13,7 +13,7 @@ use patchray::told::{Listener, Told};
 
 use crate::lower::{FromFile, LowerError, Lowered, Stages};
 use crate::method::Views;
-use crate::prepared::{Others, is_rational, rays_tracer, tracers_of_picture};
+use crate::prepared::{is_rational, lines_tracer, rays_tracer};
 use crate::scanline::view::LineOptions;
 use crate::scanline::{Outcome, Tally, rays_of};
 use crate::scene::camera::View;
@@ -80,7 +80,8 @@ fn stories<P: FromFile>(
     let tracer = if has_view {
         lowered.take_view(view, settings.limits.arena_bytes.unwrap_or(u64::MAX))?;
         let options = LineOptions { patches: stages.has_patches(), coherence: true };
-        tracers_of_picture(&mut lowered, view, settings, options, Others::NONE)?.picture
+        let (views, seen) = lowered.seen(view)?;
+        lines_tracer((views.scene, seen), view, settings, options, None)
     } else {
         rays_tracer(Views::of(&lowered), settings)
     };

@@ -4,6 +4,8 @@ use patchray::limits::Work;
 use patchray::patch::Patches;
 use patchray::point::{Plain, Point, Weighted};
 use patchray::scalar::Scalar;
+use patchray::scene::Scene;
+use patchray::view::View;
 
 use crate::bake::Baked;
 use crate::lower::{LowerError, Lowered, Stages, unfit};
@@ -75,11 +77,6 @@ pub struct Others {
     pub any: bool,
 }
 
-impl Others {
-    /// No rays but those of the scan lines.
-    pub const NONE: Self = Self { closest: false, any: false };
-}
-
 /// What traces the rays of a picture.
 pub struct Tracers<'m> {
     /// Those of its scan lines, and others if wanted: of the closest hits.
@@ -88,39 +85,38 @@ pub struct Tracers<'m> {
     pub any: Option<Box<dyn Tracer + 'm>>,
 }
 
-/// The tracers of a picture, the method M being that of its scan lines.
-fn view_tracers<'m, M, P>(
-    lowered: &'m mut Lowered<P>,
+/// What the scan lines of a view are traced by: the scene, and the kernel's view of it.
+type Seen<'m, P> = (Scene<'m, P>, View<'m, P>);
+
+fn lines_tracer_of<'m, M, P>(
+    seen: Seen<'m, P>,
     picture: &camera::View,
     settings: &Settings,
     options: LineOptions,
-    others: Others,
-) -> Result<Tracers<'m>, LowerError>
+    others: Option<Box<dyn Tracer + 'm>>,
+) -> Box<dyn Tracer + 'm>
 where
     M: ViewMethod<P> + 'm,
     P: Point,
 {
-    let (views, seen) = lowered.seen(picture)?;
-    let closest = others.closest.then(|| rays_tracer(views, settings));
-    let picture = ViewTracer::<M, P>::new((views.scene, seen), picture, settings.limits(), options, closest);
-    Ok(Tracers { picture: Box::new(picture), any: others.any.then(|| any_tracer(views, settings)) })
+    Box::new(ViewTracer::<M, P>::new(seen, picture, settings.limits(), options, others))
 }
 
-/// The tracers of the picture's rays, by the method of `settings`: [`Prepared::view_tracers`].
-pub(crate) fn tracers_of_picture<'m, P: Point>(
-    lowered: &'m mut Lowered<P>,
+/// The tracer of the picture's scan lines, by the method of `settings`; `others` traces all other rays.
+pub(crate) fn lines_tracer<'m, P: Point>(
+    seen: Seen<'m, P>,
     picture: &camera::View,
     settings: &Settings,
     options: LineOptions,
-    others: Others,
-) -> Result<Tracers<'m>, LowerError> {
+    others: Option<Box<dyn Tracer + 'm>>,
+) -> Box<dyn Tracer + 'm> {
     match settings.method {
-        Which::Newton => view_tracers::<Newton, P>(lowered, picture, settings, options, others),
-        Which::NewtonCoherent => view_tracers::<NewtonCoherent, P>(lowered, picture, settings, options, others),
-        Which::Clipping => view_tracers::<Clipping, P>(lowered, picture, settings, options, others),
-        Which::ClippingCoherent => view_tracers::<ClippingCoherent, P>(lowered, picture, settings, options, others),
-        Which::NewtonPredicted => view_tracers::<NewtonPredicted, P>(lowered, picture, settings, options, others),
-        Which::ClippingPredicted => view_tracers::<ClippingPredicted, P>(lowered, picture, settings, options, others),
+        Which::Newton => lines_tracer_of::<Newton, P>(seen, picture, settings, options, others),
+        Which::NewtonCoherent => lines_tracer_of::<NewtonCoherent, P>(seen, picture, settings, options, others),
+        Which::Clipping => lines_tracer_of::<Clipping, P>(seen, picture, settings, options, others),
+        Which::ClippingCoherent => lines_tracer_of::<ClippingCoherent, P>(seen, picture, settings, options, others),
+        Which::NewtonPredicted => lines_tracer_of::<NewtonPredicted, P>(seen, picture, settings, options, others),
+        Which::ClippingPredicted => lines_tracer_of::<ClippingPredicted, P>(seen, picture, settings, options, others),
     }
 }
 
@@ -215,7 +211,14 @@ impl Prepared {
         options: LineOptions,
         others: Others,
     ) -> Result<Tracers<'_>, LowerError> {
-        any!(self, lowered => tracers_of_picture(lowered, picture, settings, options, others))
+        any!(self, lowered => {
+            let (views, seen) = lowered.seen(picture)?;
+            let closest = others.closest.then(|| rays_tracer(views, settings));
+            Ok(Tracers {
+                picture: lines_tracer((views.scene, seen), picture, settings, options, closest),
+                any: others.any.then(|| any_tracer(views, settings)),
+            })
+        })
     }
 
     /// The same of all hits; `None` if the method looks for no more than the closest.

@@ -235,7 +235,7 @@
 #define PATCHRAY_GAVE_UP_SPANS -50
 
 // The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
-#define PATCHRAY_LAYOUT 1
+#define PATCHRAY_LAYOUT 2
 
 // What a hit's `surface` is where there is none.
 #define PATCHRAY_NO_SURFACE 4294967295
@@ -321,7 +321,7 @@ typedef struct {
 
 // The scale of a scene's coordinates.
 typedef struct {
-  // The scale and its inverse, the origin, the largest coordinate, the box, its diagonal.
+  // The scale and its inverse, the origin, the box, the largest coordinate, the box's diagonal.
   float numbers[13];
   // The power of two that the scale is.
   int32_t exponent;
@@ -632,7 +632,7 @@ typedef struct {
 
 // The scale of a scene's coordinates.
 typedef struct {
-  // The scale and its inverse, the origin, the largest coordinate, the box, its diagonal.
+  // The scale and its inverse, the origin, the box, the largest coordinate, the box's diagonal.
   double numbers[13];
   // The power of two that the scale is.
   int32_t exponent;

@@ -2,10 +2,11 @@
 
 use super::lend::Lending;
 use super::status::*;
-use super::tables::{Table, header_in_c, layout_of};
+use super::tables::{header_in_c, layout_of};
 use super::types::*;
 use super::{scratch, tables};
 use crate::grid::{GridError, GridMemory, GridOptions, Grids};
+use crate::layout::Table;
 use crate::point::Point;
 use crate::scalar::Scalar;
 use crate::scene::{Scene, SceneError, SceneMemory, SceneOptions};

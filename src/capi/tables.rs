@@ -5,6 +5,7 @@ use super::status::{Code, PATCHRAY_LAYOUT_DIFFERS};
 use super::types::*;
 use crate::frame::Frame;
 use crate::grid::{GridSlot, Grids};
+use crate::layout::Table;
 use crate::patch::Patches;
 use crate::point::Point;
 use crate::scalar::Scalar;
@@ -12,19 +13,9 @@ use crate::scene::{Scene, SceneHeader};
 use crate::tree::Tree;
 use crate::view::{View, ViewHeader};
 
-/// What a table is of.
-#[derive(Clone, Copy)]
-pub(super) enum Table {
-    Scene = 1,
-    Patches = 2,
-    Tree = 3,
-    Grids = 4,
-    View = 5,
-}
-
-/// What stands in a table's `layout`: version, table, precision, and whether there are weights, each in bits of its own.
+/// What stands in a table's `layout`.
 pub(super) const fn layout_of<S: Scalar>(table: Table, weighted: bool) -> u32 {
-    PATCHRAY_LAYOUT << 8 | (table as u32) << 4 | (size_of::<S>() as u32 / 8) << 1 | weighted as u32
+    table.tag(size_of::<S>() == 8, weighted)
 }
 
 /// Refuses tables that were made otherwise.

@@ -14,7 +14,7 @@ use crate::span::Span;
 use crate::view::{Sight, ViewHeader};
 
 /// The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
-pub const PATCHRAY_LAYOUT: u32 = 1;
+pub const PATCHRAY_LAYOUT: u32 = 2;
 
 /// What a hit's `surface` is where there is none.
 pub const PATCHRAY_NO_SURFACE: u32 = 0xffff_ffff;
@@ -94,7 +94,7 @@ pub struct patchray_grid<S> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct patchray_frame<S> {
-    /// The scale and its inverse, the origin, the largest coordinate, the box, its diagonal.
+    /// The scale and its inverse, the origin, the box, the largest coordinate, the box's diagonal.
     pub numbers: [S; 13],
     /// The power of two that the scale is.
     pub exponent: i32,

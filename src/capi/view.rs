@@ -6,9 +6,10 @@
 use super::lend::{Lending, Room};
 use super::scratch;
 use super::status::*;
-use super::tables::{self, Table, layout_of, view_header_in_c};
+use super::tables::{self, layout_of, view_header_in_c};
 use super::trace::{Found, code_of};
 use super::types::*;
+use crate::layout::Table;
 use crate::limits::{Limits, Work};
 use crate::line::{Line, LineMemory, LineNeeds, Window};
 use crate::method::{

@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+use patchray::layout::Table as Holds;
+
 use super::{Baked, Row, Slot, Table};
 use crate::memory::Kind;
 use crate::scene::trace::Precision;
@@ -95,26 +97,28 @@ impl Baked {
     fn write_c_views(&self, name: &str, out: &mut impl Write) -> io::Result<()> {
         let suffix = self.suffix();
         let of = |kind: Kind| format!("{name}_{0}, {name}_{0}_LEN", field(kind));
-        let layout = |table: u32, weighted: bool| {
-            patchray::LAYOUT << 8 | table << 4 | u32::from(suffix == "f64") << 1 | u32::from(weighted)
-        };
-        writeln!(out, "\nstatic const patchray_scene_{suffix} {name} = {{\n    {},", layout(1, self.rational))?;
+        let layout = |table: Holds, weighted: bool| table.tag(self.precision == Precision::F64, weighted);
+        writeln!(
+            out,
+            "\nstatic const patchray_scene_{suffix} {name} = {{\n    {},",
+            layout(Holds::Scene, self.rational)
+        )?;
         writeln!(out, "    {},\n    {},", self.c_frame(), self.c_slot(Slot::Grid, &self.grid))?;
         writeln!(out, "    {}, {},", of(Kind::Points), of(Kind::Surfaces))?;
         writeln!(out, "    {}, {},\n}};", of(Kind::SceneVoxels), of(Kind::SceneReferences))?;
-        let mut view = |table: u32, what: &str, kinds: &[Kind]| {
+        let mut view = |table: Holds, what: &str, kinds: &[Kind]| {
             let lists: Vec<_> = kinds.iter().map(|&kind| of(kind)).collect();
             let (layout, lists) = (layout(table, false), lists.join(", "));
             writeln!(out, "\nstatic const patchray_{what}_{suffix} {name}_{what} = {{{layout}, {lists}}};")
         };
         if self.stages.patches {
-            view(2, "patches", &[Kind::Patches, Kind::PatchRanges])?;
+            view(Holds::Patches, "patches", &[Kind::Patches, Kind::PatchRanges])?;
         }
         if self.stages.tree {
-            view(3, "tree", &[Kind::TreeNodes, Kind::TreeLinks])?;
+            view(Holds::Tree, "tree", &[Kind::TreeNodes, Kind::TreeLinks])?;
         }
         if self.stages.grids {
-            view(4, "grids", &[Kind::Grids, Kind::GridVoxels, Kind::GridReferences])?;
+            view(Holds::Grids, "grids", &[Kind::Grids, Kind::GridVoxels, Kind::GridReferences])?;
         }
         Ok(())
     }
@@ -147,12 +151,10 @@ impl Baked {
         }
     }
 
-    /// The frame as an initialiser. In memory the largest coordinate stands between origin and box.
+    /// The frame as an initialiser.
     fn c_frame(&self) -> String {
         let exponent: String = self.frame.words.iter().map(|bits| bits.cast_signed().to_string()).collect();
-        let order = [0, 1, 2, 3, 4, 11, 5, 6, 7, 8, 9, 10, 12];
-        let reals: Vec<_> = order.into_iter().filter_map(|k| self.frame.reals.get(k).copied()).collect();
-        format!("{{{{{}}}, {exponent}}}", self.c_reals(&reals))
+        format!("{{{{{}}}, {exponent}}}", self.c_reals(&self.frame.reals))
     }
 
     fn c_reals(&self, reals: &[f64]) -> String {
