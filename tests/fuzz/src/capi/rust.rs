@@ -9,7 +9,7 @@ use crate::ready::{Takes, prepare_within};
 use crate::scribble::Slot;
 use patchray::bernstein::Basis;
 use patchray::capi::*;
-use patchray::limits::{Acceptance, Limits};
+use patchray::limits::{Acceptance, GaveUp, Limit, Limits};
 use patchray::method::Remembered;
 use patchray::ray::{Hit, Interval};
 use patchray::scalar::Scalar;
@@ -151,6 +151,8 @@ pub(super) fn is_answered<S: Scalar>(code: i32, answer: &Answer<S>) {
     match answer {
         Ok(Some(_)) => assert_eq!(code, PATCHRAY_HIT),
         Ok(None) => assert_eq!(code, PATCHRAY_MISS),
+        // No budget: the call was wrong.
+        Err(GaveUp { limit: Limit::Line, .. }) => assert_eq!(code, PATCHRAY_RAY_OUT_OF_LINE),
         Err(gave_up) => {
             let limit = gave_up.limit.name().replace('-', "_").to_uppercase();
             assert_eq!(name, format!("PATCHRAY_GAVE_UP_{limit}"));
