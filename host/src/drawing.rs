@@ -161,17 +161,18 @@ fn draw_in<const N: usize>(
     drawn
 }
 
-/// The pixels of a row, from the colours of its samples in one or two scan lines: their mean, in linear colour. A pixel with
-/// a ray that was given up shows that.
+/// The pixels of a row, from the colours of its samples in one or two scan lines: the mean, in linear colour, of what the
+/// display can show of each. Of a light many times brighter than white a quarter would still be white, and its edge a
+/// staircase, however many samples a pixel has. A pixel with a ray that was given up shows that.
 fn pixels(lines: &[Vec<Colour>]) -> Vec<picture::Rgb> {
     let side = lines.len();
     let samples = (side * side) as f64;
     let width = lines.first().map_or(0, Vec::len) / side.max(1);
     let pixel = |px: usize| {
         let samples_of = lines.iter().flat_map(|line| &line[side * px..side * (px + 1)]);
-        let sum = samples_of
-            .copied()
-            .try_fold([0.0; 3], |sum, colour| colour.map(|colour: [f64; 3]| [0, 1, 2].map(|k| sum[k] + colour[k])));
+        let sum = samples_of.copied().try_fold([0.0; 3], |sum, colour| {
+            colour.map(|colour: [f64; 3]| [0, 1, 2].map(|k| sum[k] + colour[k].clamp(0.0, 1.0)))
+        });
         sum.map_or(GAVE_UP, |sum| encode(sum.map(|part| part / samples)))
     };
     (0..width).map(pixel).collect()
@@ -184,4 +185,23 @@ pub fn digest(model: &Model, appearance: &Appearance, settings: &Settings, view:
     // Numbers are written so that they read back to the same bits.
     let text = format!("{} {view:?} {settings:?} {appearance:?} {model:?}", env!("CARGO_PKG_VERSION"));
     Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As the mean of the light itself, all but the first of these were white, and the edges of highlights were jagged.
+    #[test]
+    fn a_pixel_at_the_edge_of_a_bright_light_is_between_it_and_what_lies_beside() {
+        let (light, dark) = (Some([40.0; 3]), Some([0.0; 3]));
+        let lines = [vec![dark, dark, dark, light, light, light], vec![dark, dark, dark, dark, dark, light]];
+        let expected = [0.0, 0.25, 0.75].map(|part| encode([part; 3]));
+        assert_eq!(pixels(&lines), expected);
+    }
+
+    #[test]
+    fn a_pixel_of_which_one_ray_was_given_up_shows_that() {
+        assert_eq!(pixels(&[vec![Some([0.5; 3]), None], vec![Some([0.5; 3]); 2]]), [GAVE_UP]);
+    }
 }
