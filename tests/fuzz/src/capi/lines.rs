@@ -382,6 +382,10 @@ impl<P: Views + Kind + Slot> Lines<P> {
                 assert!((PATCHRAY_RAY_OUT_OF_VIEW..=PATCHRAY_RAY_RANGE).contains(&code), "{code}");
                 continue;
             };
+            // A ray that met a surface of more than its scratch: from there on the line's memory is another.
+            if code == PATCHRAY_SCRATCH {
+                return assert!(self.prepared.is_short_of(case));
+            }
             let answer = thread.trace(method, &view, &mut in_rust, line.number, &ray, &limits);
             assert_eq!(work, patchray_work::from(thread.work), "{answer:?}");
             is_answered(code, &answer);
