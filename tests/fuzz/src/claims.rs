@@ -71,7 +71,8 @@ fn weight_ratio(surface: &ModelSurface) -> f64 {
 /// The point of the surface at a hit's (u, v) is the ray's point at its t, to the tolerance and what rounding leaves.
 ///
 /// Cases whose numbers leave no such claim are passed over: a tolerance that is no small number, coordinates whose products
-/// leave `f64`, weights so far apart that quotients lose their digits.
+/// leave `f64`, weights so far apart that quotients lose their digits, or so small that coordinates times weights, which is
+/// what the kernel is given, lose theirs.
 pub(crate) fn on_the_ray<S: Scalar>(hit: &Hit<S>, case: &Case, ray: &RayLine, limits: &Limits<S>, what: impl Debug) {
     let surface = &case.model.surfaces[hit.surface as usize];
     let largest = largest_coordinate(case);
@@ -79,7 +80,9 @@ pub(crate) fn on_the_ray<S: Scalar>(hit: &Hit<S>, case: &Case, ray: &RayLine, li
     let tolerance = limits.tolerance.to_f64();
     let fits = |c: f64| c == 0.0 || (1e-30..1e30).contains(&c.abs());
     let all_fit = [largest].iter().chain(&ray.origin).chain(&ray.direction).all(|&c| fits(c));
-    if !(all_fit && largest > 0.0 && tolerance < 0.01 && ratio < 1e3) {
+    let least = S::MIN_POSITIVE.to_f64() / S::EPSILON.to_f64();
+    let given = |&[x, y, z, w]: &[f64; 4]| [x, y, z].iter().all(|&c| c == 0.0 || (c * w).abs() >= least);
+    if !(all_fit && largest > 0.0 && tolerance < 0.01 && ratio < 1e3 && surface.points.iter().all(given)) {
         return;
     }
     let found = Found {
