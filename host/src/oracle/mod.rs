@@ -57,9 +57,10 @@ pub struct Verdict {
     /// - the closest root's own margin;
     /// - how far the ray must move before the second root is as close: the difference in depth, divided by the sum of
     ///   both roots' slopes where that exceeds 1;
+    /// - how far it must move before a root outside the range of t comes into it, or the closest one leaves it: the distance
+    ///   along the ray, divided by the root's slope where that exceeds 1;
     /// - the clearances of all parts of the surfaces, no farther away than the closest root, that hold no root but would
     ///   gain one by a displacement: parts with a fold, or that touch an outer border, or whose whole surface is passed;
-    /// - the distance along the ray from a root outside the range of t to that range;
     /// - 0, if an unresolved part may be closer than the closest root.
     ///
     /// Clearances are lower bounds by convex hulls, so an ordinary ray's margin may be some 1/1000, whatever it passes.
@@ -205,26 +206,27 @@ impl<R: Real> OracleIn<R> {
                 inside.push(*root);
             }
         }
+        // How far a root's depth moves when the ray moves sideways, per length.
+        let slope = |r: &Found<R>| (1.0 - r.cosine * r.cosine).sqrt() / r.cosine;
+        let carried = |depth: f64, slope: f64| depth / if slope > 1.0 { slope } else { 1.0 };
         // How deep the answer looks: parts that begin beyond the closest root cannot change it.
         let deepest = inside.first().map_or(range[1], |r| r.depth + R::new(r.blur));
         for root in &merged {
             let near = root.depth <= deepest || inside.is_empty();
             let t = frame.parameter(root.depth);
             if near && t < times[0] {
-                limit(range[0].less(root.depth));
+                limit(carried(range[0].less(root.depth), slope(root)));
             } else if near && t > times[1] {
-                limit(root.depth.less(range[1]));
+                limit(carried(root.depth.less(range[1]), slope(root)));
             }
         }
         if let Some(closest) = inside.first() {
             limit(closest.margin);
-            limit(closest.depth.less(range[0]));
-            limit(range[1].less(closest.depth));
+            limit(carried(closest.depth.less(range[0]), slope(closest)));
+            limit(carried(range[1].less(closest.depth), slope(closest)));
         }
-        if let [closest, second, ..] = inside[..] {
-            let slope = |r: Found<R>| (1.0 - r.cosine * r.cosine).sqrt() / r.cosine;
-            let slopes = slope(closest) + slope(second);
-            limit(second.depth.less(closest.depth) / if slopes > 1.0 { slopes } else { 1.0 });
+        if let [closest, second, ..] = &inside[..] {
+            limit(carried(second.depth.less(closest.depth), slope(closest) + slope(second)));
         }
         for clearance in &findings.clearances {
             if clearance.depth <= deepest || inside.is_empty() {

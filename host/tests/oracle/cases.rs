@@ -11,6 +11,7 @@ in_either!(
     poles_seams_and_corners_of_a_sphere_are_met_once
     borders_and_corners_of_a_square_belong_to_it
     the_range_of_t_selects
+    a_root_at_a_shallow_angle_soon_leaves_the_range_of_t
     doubled_surfaces_count_once
     odd_input_ends_and_is_said_to_be_undecided
     an_answer_outlasts_a_displacement_within_its_margin
@@ -148,6 +149,25 @@ fn the_range_of_t_selects<R: Real>(_: usize) {
     assert_eq!(count(3.9, 4.1), 0);
     assert_eq!(count(5.0, f64::INFINITY), 0);
     assert_eq!(count(f64::INFINITY, 0.0), 0);
+}
+
+/// Moved aside by far less than its distance to the range's end, such a root passes it: an answer of `f32` was called lost that
+/// lay a twentieth of its tolerance off.
+fn a_root_at_a_shallow_angle_soon_leaves_the_range_of_t<R: Real>(_: usize) {
+    let slope = 2f64.powi(-12);
+    let oracle = OracleIn::<R>::new(&single(parallelogram([0.0; 3], [1.0, 0.0, slope], [0.0, 1.0, 0.0])));
+    let (origin, d) = ([0.5, 0.5, slope * 0.5625], [1.0, 0.0, 0.0]);
+    for (range, roots, distance) in [
+        ([0.0, 0.03125], 0, 0.03125),
+        ([0.125, 1.0], 0, 0.0625),
+        ([0.0, 1.0], 1, 0.0625),
+        ([-1.0, 0.078125], 1, 0.015625),
+    ] {
+        let verdict = oracle.trace(origin, d, range[0], range[1]);
+        assert_eq!(verdict.roots.len(), roots, "{range:?}: {verdict:?}");
+        let sideways = distance * slope / 2f64.sqrt();
+        assert!((0.5 * sideways..1.0001 * sideways).contains(&verdict.margin), "{range:?}: {verdict:?}");
+    }
 }
 
 fn doubled_surfaces_count_once<R: Real>(fewer: usize) {
