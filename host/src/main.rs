@@ -83,7 +83,7 @@ const WIDTH: usize = 240;
 /// Prints why the command failed; the exit code that goes with it.
 fn report(failure: Failure) -> ExitCode {
     let code = failure.code();
-    if code != 0 {
+    if code != 0 && !matches!(failure, Failure::Told) {
         if !std::io::stderr().is_terminal() {
             // Fails only if a hook is set already; the default then does as well.
             let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().width(WIDTH).build())));

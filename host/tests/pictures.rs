@@ -14,6 +14,7 @@ use patchray_host::settings::{Flags, Settings};
 use patchray_host::shade::shadows::Shadows;
 use patchray_host::viewed::{Viewed, Wishes};
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
@@ -54,7 +55,8 @@ fn rows_drawn_anew_are_the_recorded_ones() {
         assert_eq!((view.size, view.sampling.per_pixel()), ([1024; 2], 4), "{name}");
         let mut viewed = Viewed::build(&scene.model, &settings, &view, Wishes::of(appearance)).expect("valid");
         let (tracers, _) = viewed.tracers().expect("it was just made ready");
-        let (shadows, _) = Shadows::prepare(&scene.model, appearance, &settings, view.eye).expect("there is memory");
+        let (shadows, _) = Shadows::prepare(&scene.model, appearance, &settings, view.eye, &AtomicBool::new(false))
+            .expect("there is memory");
         assert!((0..appearance.lights.len()).all(|light| shadows.casts(light)), "{name}");
         let recorded = recorded(name);
         let mut differ = 0;

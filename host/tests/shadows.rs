@@ -1,5 +1,7 @@
 //! Shadows against closed forms: those of spheres, by rays and by maps, and of what lies close to a surface.
 
+use std::sync::atomic::AtomicBool;
+
 use clap::ValueEnum;
 use patchray_host::drawing::{Drawing, Watch, draw};
 use patchray_host::picture::rows::Rows;
@@ -41,7 +43,8 @@ fn drawn(scene: &Scene, settings: &Settings) -> (Vec<f64>, Vec<MapUsed>) {
     let appearance = &scene.appearance;
     let mut viewed = Viewed::build(&scene.model, settings, &view, Wishes::of(appearance)).expect("valid");
     let (tracers, _) = viewed.tracers().expect("it was just made ready");
-    let (shadows, maps) = Shadows::prepare(&scene.model, appearance, settings, view.eye).expect("there is memory");
+    let (shadows, maps) = Shadows::prepare(&scene.model, appearance, settings, view.eye, &AtomicBool::new(false))
+        .expect("there is memory");
     let drawing = Drawing {
         tracers: &tracers,
         view: &view,
@@ -144,6 +147,23 @@ fn the_shadow_of_a_sphere_on_a_floor_is_the_cones() {
     }
 }
 
+/// In 32 bits the depths of a scene are all one to a light a hundred thousand times its size away: maps of it darkened what
+/// is lit, in rings, and the larger the map the more. A thousand times farther still they saw no shadow at all.
+#[test]
+fn the_map_of_a_light_far_off_is_right_to_a_texel() {
+    for far in [1e2, 1e5, 1e8, 1e11] {
+        let place = format!("position = [{}, {}, {}]", 4.0 * far, 2.0 * far, 7.0 * far);
+        let text = SPHERE.replace("position = [4, 2, 7]", &place);
+        let (by_rays, _) = drawn(&scene(&text, RAYS), &Settings::default());
+        for (size, off_edge) in [(128, 90), (1024, 20)] {
+            let (by_map, maps) = drawn(&scene(&text, map(size)), &Settings::default());
+            assert_eq!(maps[0].faces, 1);
+            let differ = by_map.iter().zip(&by_rays).filter(|(a, b)| (**a - **b).abs() > 0.1).count();
+            assert!(differ < off_edge, "{differ} pixels of {} at {far:e}, {size} texels wide", by_map.len());
+        }
+    }
+}
+
 /// The sphere without the floor.
 fn alone() -> String {
     SPHERE.lines().filter(|line| !line.starts_with("polygons")).map(|line| format!("{line}\n")).collect()
@@ -189,7 +209,8 @@ fn shares(scene: &Scene, settings: &Settings, points: &[[[f64; 3]; 2]]) -> (Vec<
     let (appearance, view) = (&scene.appearance, scene.description.camera.view([8, 8]));
     let mut viewed = Viewed::build(&scene.model, settings, &view, Wishes::of(appearance)).expect("valid");
     let (tracers, _) = viewed.tracers().expect("it was just made ready");
-    let (shadows, maps) = Shadows::prepare(&scene.model, appearance, settings, view.eye).expect("there is memory");
+    let (shadows, maps) = Shadows::prepare(&scene.model, appearance, settings, view.eye, &AtomicBool::new(false))
+        .expect("there is memory");
     let light = appearance.lights[0].position.expect("it has a place");
     let mut visibility = Visibility::new(&shadows, &appearance.polygons, points.len(), 1);
     for (index, &[point, normal]) in points.iter().enumerate() {

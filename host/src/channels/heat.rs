@@ -114,20 +114,56 @@ pub fn picture(channels: &Channels, name: &str, scale: &Scale) -> Option<Picture
     let gave_up = channels.named("status").map(|status| &status.values);
     let is_given_up = |pixel| gave_up.is_some_and(|status| STATUS.get(status.get(pixel) as usize) == Some(&GIVEN_UP));
     let [width, height] = channels.size;
-    let mut canvas = Canvas::new([width.max(LEAST_WIDTH), height + LEGEND]);
+    let wide = width.max(LEAST_WIDTH);
+    let codes = codes(scale, &channel.values, wide);
+    let more_lines = codes.last().map_or(0, |last| last.line);
+    let mut canvas = Canvas::new([wide, height + LEGEND + more_lines * LINE]);
     for pixel in 0..channels.pixels() {
         let colour = if is_given_up(pixel) { GAVE_UP } else { scale.colour(channel.values.get(pixel)) };
         canvas.set([pixel as u32 % width, pixel as u32 / width], colour);
     }
-    legend(&mut canvas, height, name, scale, &channel.values);
+    legend(&mut canvas, height, name, scale, &codes);
     Some(canvas.picture())
 }
 
-/// A legend's height in pixels, and its least width, in which all texts find room.
+/// A legend's height in pixels, of one line of codes, and that of each further one; and its least width, in which all other
+/// texts find room.
 const LEGEND: u32 = 36;
+const LINE: u32 = 12;
 const LEAST_WIDTH: u32 = 420;
 
-fn legend(canvas: &mut Canvas, top: u32, name: &str, scale: &Scale, values: &Values) {
+/// A code in a legend.
+struct Code {
+    /// What it means, and how many pixels it has, if any.
+    text: String,
+    /// Where its line begins, and which one that is.
+    x: u32,
+    line: u32,
+}
+
+/// The codes of a scale, if it is of codes, in lines of this width.
+fn codes(scale: &Scale, values: &Values, width: u32) -> Vec<Code> {
+    let Scale::Codes(names) = scale else {
+        return Vec::new();
+    };
+    let (mut x, mut line) = (MARGIN, 0);
+    let code = |(code, name): (usize, &&str)| {
+        let count = match values {
+            Values::Count(all) => all.iter().filter(|&&value| value == code as u32).count(),
+            Values::Real(_) => 0,
+        };
+        let text = if count > 0 { format!("{name} {count}") } else { (*name).to_owned() };
+        let wide = SWATCH + FONT_6X10.character_size.width * text.len() as u32 + MARGIN;
+        if x > MARGIN && x + wide > width {
+            (x, line) = (MARGIN, line + 1);
+        }
+        x += wide;
+        Code { text, x: x - wide, line }
+    };
+    names.iter().enumerate().map(code).collect()
+}
+
+fn legend(canvas: &mut Canvas, top: u32, name: &str, scale: &Scale, codes: &[Code]) {
     let bar = |canvas: &mut Canvas, value: &dyn Fn(f64) -> f64| {
         for x in 0..BAR {
             let colour = scale.colour(value(f64::from(x) / f64::from(BAR - 1)));
@@ -148,19 +184,11 @@ fn legend(canvas: &mut Canvas, top: u32, name: &str, scale: &Scale, values: &Val
             bar(canvas, &|share| (1.0 + MOST).powf(share) - 1.0);
             ends = Some(["0".to_owned(), format!("{MOST:.0} or more")]);
         }
-        Scale::Codes(names) => {
-            let mut x = MARGIN;
-            for (code, text) in names.iter().enumerate() {
-                (0..64).for_each(|k| canvas.set([x + k % 8, top + 16 + k / 8], scale.colour(code as f64)));
-                let count = match values {
-                    Values::Count(all) => all.iter().filter(|&&value| value == code as u32).count(),
-                    Values::Real(_) => 0,
-                };
-                if count > 0 {
-                    x = canvas.write([x + 10, top + 15], &format!("{text} {count}")) + MARGIN;
-                } else {
-                    x = canvas.write([x + 10, top + 15], text) + MARGIN;
-                }
+        Scale::Codes(_) => {
+            for (code, Code { text, x, line }) in codes.iter().enumerate() {
+                let top = top + 15 + LINE * line;
+                (0..64).for_each(|k| canvas.set([x + k % 8, top + 1 + k / 8], scale.colour(code as f64)));
+                canvas.write([x + SWATCH, top], text);
             }
         }
         Scale::Numbers => {
@@ -172,15 +200,22 @@ fn legend(canvas: &mut Canvas, top: u32, name: &str, scale: &Scale, values: &Val
         debug_assert!(x <= LEAST_WIDTH);
     }
     let after = canvas.write([MARGIN, top + 3], name) + 2 * MARGIN;
-    for (colour, text, x) in [(NOTHING, "nothing met", after), (GAVE_UP, "gave up", after + 100)] {
+    // Counts are of rays that met nothing, too.
+    let outside: &[_] = match scale {
+        Scale::Counts => &[(GAVE_UP, "gave up", after)],
+        _ => &[(NOTHING, "nothing met", after), (GAVE_UP, "gave up", after + 100)],
+    };
+    for &(colour, text, x) in outside {
         (0..64).for_each(|k| canvas.set([x + k % 8, top + 4 + k / 8], colour));
-        canvas.write([x + 10, top + 3], text);
+        canvas.write([x + SWATCH, top + 3], text);
     }
 }
 
 /// The length of the legend's bar, and what is left free around it.
 const BAR: u32 = 128;
 const MARGIN: u32 = 6;
+/// From where a colour stands to the text beside it.
+const SWATCH: u32 = 10;
 
 /// What is drawn on.
 struct Canvas {
@@ -269,6 +304,24 @@ mod tests {
             let colours: std::collections::BTreeSet<Rgb> =
                 (0..names.len()).map(|code| scale.colour(code as f64)).collect();
             assert_eq!(colours.len(), names.len());
+        }
+    }
+
+    /// Codes that did not fit were cut off at the picture's edge.
+    #[test]
+    fn codes_stand_in_as_many_lines_as_they_need() {
+        let values = Values::Count((0..PATHS.len() as u32).flat_map(|code| vec![code; 12345]).collect());
+        for width in [LEAST_WIDTH, 512, 1024, 4096] {
+            let codes = codes(&Scale::Codes(&PATHS), &values, width);
+            assert_eq!(codes.len(), PATHS.len());
+            for (name, Code { text, x, .. }) in PATHS.iter().zip(&codes) {
+                assert_eq!(*text, format!("{name} 12345"));
+                assert!(x + SWATCH + 6 * text.len() as u32 <= width, "{text} at {width}");
+            }
+            for pair in codes.windows(2) {
+                let follows = pair[1].line == pair[0].line && pair[1].x > pair[0].x;
+                assert!(follows || (pair[1].line == pair[0].line + 1 && pair[1].x == MARGIN));
+            }
         }
     }
 

@@ -33,6 +33,9 @@ impl Aov {
 pub fn parse(text: &str) -> Result<Aov, String> {
     let ends = |path: &str, with| Path::new(path).extension().is_some_and(|end| end.eq_ignore_ascii_case(with));
     match text.split_once('=') {
+        Some((name, _)) if ends(text, "exr") && seen::names().any(|known| known == name) => {
+            Err(format!("OpenEXR holds all channels: write FILE.exr, or {name}=FILE.png for `{name}` as a heat map"))
+        }
         _ if ends(text, "exr") => Ok(Aov::All(text.into())),
         Some((name, path)) if ends(path, "png") => match seen::names().find(|known| *known == name) {
             Some(name) => Ok(Aov::Heat(name, path.into())),

@@ -43,7 +43,9 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     let named = [("--rust", rust), ("--c", c)].map(|(flag, path)| Some((flag, path.as_deref()?)));
     let named: Vec<_> = named.into_iter().flatten().collect();
     check_all(None, &named, &[file], flags)?;
-    let Loaded { model, settings, .. } = load::scene_or_patches(file, flags)?;
+    let loaded = load::scene_or_patches(file, flags)?;
+    check_all(None, &named, &loaded.inputs(), flags)?;
+    let Loaded { model, settings, .. } = loaded;
     let prepared = Prepared::build(&model, Stages::of(settings.method), &settings)?;
     let baked = prepared.baked(settings.method);
     let name = name(file);

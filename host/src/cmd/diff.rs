@@ -51,7 +51,8 @@ pub fn run(args: &DiffArgs) -> Result<(), Failure> {
     let [a, b] = [load(first)?, load(second)?];
     let Some(difference) = Difference::of(&a, &b, *tolerance) else {
         let [a, b] = [a, b].map(|channels| channels.size.map(|side| side.to_string()).join(" x "));
-        return Err(Failure::Differ { how: format!("the first has {a} pixels, the second {b}") });
+        let how = format!("the first has {a} pixels, the second {b}");
+        return Err(if *quiet { Failure::Told } else { Failure::Differ { how } });
     };
     if let Some(path) = output {
         let picture = difference.picture(&a);
@@ -66,8 +67,8 @@ pub fn run(args: &DiffArgs) -> Result<(), Failure> {
     if difference.is_none() {
         return Ok(());
     }
-    let Difference { pixels, differing, .. } = difference;
-    Err(Failure::Differ { how: format!("{differing} of {pixels} pixels differ") })
+    // How they differ is what was printed.
+    Err(Failure::Told)
 }
 
 fn load(path: &Path) -> Result<Channels, Failure> {

@@ -143,8 +143,10 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     }
     let output = flags.output.as_deref().unwrap_or(Path::new("-"));
     // What is printed is one thing, in one form or the other.
-    check_outputs(Some(output), &[file], &Flags { json: false, ..flags.clone() })?;
+    let one = Flags { json: false, ..flags.clone() };
+    check_outputs(Some(output), &[file], &one)?;
     let loaded = load::scene_or_patches(file, flags)?;
+    check_outputs(Some(output), &loaded.inputs(), &one)?;
     let mut out = Output::create(output)?;
     let info = Info::of(file, &loaded)?;
     let text = if flags.json { to_json(&info) } else { info.to_text() };

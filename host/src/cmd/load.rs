@@ -155,6 +155,11 @@ impl Loaded {
         self.files.iter().find(|file| file.surfaces.contains(&index))
     }
 
+    /// The files that the surfaces come from: beside what the command line names, nothing is to be written over them.
+    pub(crate) fn inputs(&self) -> Vec<&Path> {
+        self.files.iter().map(|file| Path::new(&file.name)).collect()
+    }
+
     /// The number in its file of the surface with this index in the model.
     pub fn number_of(&self, index: usize) -> usize {
         self.model.surfaces.get(index).map_or(index, |surface| surface.number)

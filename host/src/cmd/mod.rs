@@ -81,6 +81,9 @@ pub enum Failure {
         /// In what.
         how: String,
     },
+    /// The answer is no, and has been told as far as it was asked for.
+    #[error("no")]
+    Told,
     /// The answer is no: a picture is not whole.
     #[error("rows {rows} are in none of the parts")]
     #[diagnostic(help("draw them with --rows {rows}, and merge all parts again"))]
@@ -104,7 +107,7 @@ impl Failure {
     /// read the output went away.
     pub fn code(&self) -> u8 {
         match self {
-            Failure::No { .. } | Failure::Differ { .. } | Failure::Missing { .. } => 1,
+            Failure::No { .. } | Failure::Differ { .. } | Failure::Told | Failure::Missing { .. } => 1,
             Failure::Usage { .. } => 2,
             Failure::Input(_) | Failure::Refused { .. } => 3,
             Failure::Lower(LowerError::Surface { .. } | LowerError::Vanishes { .. } | LowerError::NoView { .. }) => 3,

@@ -84,6 +84,7 @@ pub fn run(args: &QueryArgs) -> Result<(), Failure> {
     let output = flags.output.as_deref().unwrap_or(Path::new("-"));
     check_outputs(Some(output), &[patches, rays], flags)?;
     let loaded = load::scene_or_patches(patches, flags)?;
+    check_outputs(Some(output), &loaded.inputs(), flags)?;
     let settings = &loaded.settings;
     if settings.method.needs_view() {
         return Err(only_views(settings.method));

@@ -32,8 +32,9 @@ pub struct RenderArgs {
     /// The samples of a pixel: one, or four, uniform or jittered [default: one]
     #[arg(long, value_enum, help_heading = "Output")]
     pub samples: Option<Sampling>,
-    /// Draw these rows only, the top one being 0, into a part for `patchray merge`; what B has beyond the last row is left out
-    #[arg(long, value_name = "A..B", help_heading = "Output")]
+    /// Draw these rows only, from A up to B, the top one being 0, into a part for `patchray merge`; several with commas; what B
+    /// has beyond the last row is left out
+    #[arg(long, value_name = "A..B[,C..D]", help_heading = "Output")]
     pub rows: Option<Rows>,
     /// Draw only the rows that an interrupted run of the same picture has not finished, all if there is none
     #[arg(long, help_heading = "Output")]
@@ -66,6 +67,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let RenderArgs { scene, rows, resume, aov, preview, pixel, explain, flags, .. } = args;
     let usage = |message: &str, help: &str| Failure::Usage { message: message.to_owned(), help: help.to_owned() };
     if let Some(pixel) = *pixel {
+        if flags.output.is_some() || flags.stats.is_some() || flags.json {
+            return Err(usage(
+                "`--pixel` prints what a pixel's rays meet, and that alone",
+                "leave out -o, --stats and --json",
+            ));
+        }
         let loaded = load::scene(scene, flags)?;
         return pixel::run(&loaded, &view_of(&loaded, args)?, pixel, *explain);
     }
@@ -79,6 +86,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let channels: Vec<_> = aov.iter().map(|aov| ("--aov", aov.path())).collect();
     check_all(Some(output), &channels, &[scene], flags)?;
     let loaded = load::scene(scene, flags)?;
+    check_all(Some(output), &channels, &loaded.inputs(), flags)?;
     let Some((_, appearance)) = &loaded.scene else {
         return Err(Failure::Internal("a scene without a description".to_owned()));
     };
@@ -88,7 +96,10 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let all = Rows::all(size[1]);
     let wanted = rows.as_ref().map_or(all.clone(), |rows| rows.within(&all));
     if wanted.is_empty() {
-        return Err(usage(&format!("there are no such rows: the picture has {}", size[1]), "name rows within 0.."));
+        return Err(usage(
+            &format!("there are no such rows: the picture has {}", size[1]),
+            &format!("name rows within {all}"),
+        ));
     }
     let mut part = Part::new(size, digest(&loaded.model, appearance, settings, &view));
     if let Some(path) = unfinished.as_deref().filter(|path| *resume && path.exists()) {
@@ -100,7 +111,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut viewed = Viewed::build(&loaded.model, settings, &view, Wishes::of(appearance))?;
     let (tracers, used) = viewed.tracers()?;
     let pool = pool(settings.threads)?;
-    let (shadows, maps) = pool.install(|| Shadows::prepare(&loaded.model, appearance, settings, view.eye))?;
+    let (shadows, maps) = pool.install(|| Shadows::prepare(&loaded.model, appearance, settings, view.eye, stop))?;
 
     let rows_left = wanted.without(&part.rows());
     let rays = u64::from(size[0]) * u64::from(view.sampling.per_pixel());

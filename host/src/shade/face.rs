@@ -16,7 +16,8 @@ use crate::scene::sampling::Sampling;
 /// What the light sees in the middle of a texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Texel {
-    /// 1 over the depth of the nearest surface; 0 where there is none, NaN where that is not known.
+    /// The face's unit over the depth of the nearest surface, less its base; that of 0 where there is none, NaN where that is not
+    /// known.
     inverse: f32,
     /// What it grows by, along the plane that touches the surface, toward the next texel to the right, and to the one below.
     slope: [f32; 2],
@@ -39,6 +40,11 @@ pub(super) struct Face {
     /// The slopes, rightward and upward, of the picture's middle, and those from there to its edges.
     middle: [f64; 2],
     half: [f64; 2],
+    /// What texels hold: `unit` / depth − `base`. Of a light far off all depths are nearly one, by which they are told apart in
+    /// 32 bits only if that is taken off them: the unit is then the least, and the base 1. Of one among the surfaces the unit
+    /// is the largest, and the base 0.
+    unit: f64,
+    base: f64,
     size: u32,
     texels: Vec<Texel>,
 }
@@ -61,8 +67,10 @@ impl Face {
     pub(super) fn around(model: &Model, light: [f64; 3], size: u32) -> Option<Self> {
         let axes = axes_of(middle_of(model, light)?);
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let mut unit = f64::INFINITY;
         for &[x, y, z, _] in model.surfaces.iter().flat_map(|surface| &surface.points) {
-            let slopes = slopes(&axes, subtract([x, y, z], light))?.0;
+            let (slopes, depth) = slopes(&axes, subtract([x, y, z], light))?;
+            unit = unit.min(depth);
             if !slopes.iter().all(|slope| slope.abs() <= WIDEST) {
                 return None;
             }
@@ -74,13 +82,18 @@ impl Face {
         let middle = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
         // A texel more on each side, and as square as a picture has to be that has an extent.
         let wide = [0, 1].map(|k| 0.5 * (high[k] - low[k]) * (1.0 + 2.0 / f64::from(size)));
-        let least = 1e-3 * wide[0].max(wide[1]).max(1e-6);
+        let least = 1e-3 * wide[0].max(wide[1]).max(1e-12);
         let half = wide.map(|half| half.max(least));
-        Some(Face { light, axes, middle, half, size, texels: Vec::new() })
+        Some(Face { light, axes, middle, half, unit, base: 1.0, size, texels: Vec::new() })
     }
 
     /// The six faces of a cube around the light, which see everything.
-    pub(super) fn cube(light: [f64; 3], size: u32) -> Vec<Self> {
+    pub(super) fn cube(model: &Model, light: [f64; 3], size: u32) -> Vec<Self> {
+        let points = model.surfaces.iter().flat_map(|surface| &surface.points);
+        let away =
+            |&[x, y, z, _]: &[f64; 4]| subtract([x, y, z], light).iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let farthest = points.map(away).fold(0.0, f64::max);
+        let unit = if farthest > 0.0 { farthest } else { 1.0 };
         let axis = |k: usize, sign: f64| [0, 1, 2].map(|j| if j == k { sign } else { 0.0 });
         let forward = (0..3).flat_map(|k| [axis(k, 1.0), axis(k, -1.0)]);
         let face = |forward| Face {
@@ -88,6 +101,8 @@ impl Face {
             axes: axes_of(forward),
             middle: [0.0; 2],
             half: [1.0; 2],
+            unit,
+            base: 0.0,
             size,
             texels: Vec::new(),
         };
@@ -128,14 +143,14 @@ impl Face {
     fn texel(&self, outcome: &Outcome, direction: [f64; 3]) -> Texel {
         let found = match outcome {
             Outcome::Hit(found) => found,
-            Outcome::Miss => return Texel { inverse: 0.0, slope: [0.0; 2] },
+            Outcome::Miss => return Texel { inverse: -self.base as f32, slope: [0.0; 2] },
             // Not known, and therefore neither.
             Outcome::GaveUp { .. } | Outcome::Refused(_) | Outcome::Invalid => {
                 return Texel::UNKNOWN;
             }
         };
-        // Directions are one unit deep, so that t is the depth.
-        let inverse = 1.0 / found.t;
+        // Directions are one deep, so that t is the depth.
+        let inverse = self.unit / found.t;
         let [_, right, up] = self.axes;
         let (across, steepest) = (self.texel_slope(), STEEPEST * self.texel_slope() * inverse);
         let slope = |along: [f64; 3], half: f64| {
@@ -145,7 +160,7 @@ impl Face {
             if slope.is_nan() || across == 0.0 { 0.0 } else { slope.clamp(-steepest, steepest) }
         };
         let slope = [slope(right, self.half[0]), -slope(up, self.half[1])];
-        Texel { inverse: inverse as f32, slope: slope.map(|slope| slope as f32) }
+        Texel { inverse: (inverse - self.base) as f32, slope: slope.map(|slope| slope as f32) }
     }
 
     /// The width of a texel, of the wider side, at depth 1.
@@ -186,7 +201,7 @@ impl Face {
             if inverse.is_nan() {
                 return Some(f64::NAN);
             }
-            if 1.0 / raised >= inverse {
+            if self.unit / raised - self.base >= inverse {
                 share += weight;
                 lit += 1;
             }

@@ -4,8 +4,10 @@
 //! them is the paper's remark. Surfaces alone are in a map: polygons, which may reach far beyond it, are few and flat, and
 //! a ray is asked whether it meets one.
 
-use serde::Serialize;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
+
+use serde::Serialize;
 
 use super::face::{Face, TEXEL_BYTES};
 use crate::batch::Lanes;
@@ -48,7 +50,8 @@ pub struct MapUsed {
 
 impl ShadowMap {
     /// The map of a light at `place`, whose number is `light`, drawn on rayon's current threads by the method of `settings`, or
-    /// where that needs a view and there is none, by [`Method::of_any_rays`]. It does not depend on the number of threads.
+    /// where that needs a view and there is none, by [`Method::of_any_rays`]. It does not depend on the number of threads. Once
+    /// `stop` is set, no further row is drawn.
     ///
     /// # Errors
     /// As [`Viewed::build`].
@@ -57,10 +60,12 @@ impl ShadowMap {
         settings: &Settings,
         (light, place): (usize, [f64; 3]),
         options: MapOptions,
+        stop: &AtomicBool,
     ) -> Result<(Self, MapUsed), LowerError> {
         let begin = Instant::now();
         let MapOptions { size, bias } = options;
-        let mut faces = Face::around(model, place, size).map_or_else(|| Face::cube(place, size), |face| vec![face]);
+        let mut faces =
+            Face::around(model, place, size).map_or_else(|| Face::cube(model, place, size), |face| vec![face]);
         let mut used = MapUsed {
             light,
             size,
@@ -71,7 +76,7 @@ impl ShadowMap {
             bytes: 0,
             seconds: 0.0,
         };
-        for face in &mut faces {
+        for face in faces.iter_mut().take_while(|_| !stop.load(Ordering::Relaxed)) {
             let picture = face.picture();
             let mut viewed = match Viewed::build(model, settings, &picture, Wishes::PRIMARY) {
                 Err(LowerError::NoView { .. }) => {
@@ -84,6 +89,9 @@ impl ShadowMap {
             let lanes = Lanes::new(tracer.as_ref());
             let tallies = face.draw(|line| {
                 let (mut outcomes, mut tally) = (Vec::new(), Tally::default());
+                if stop.load(Ordering::Relaxed) {
+                    return (Vec::new(), outcomes, tally);
+                }
                 let (samples, rays) = (picture.scan_line(line), row(&picture, line));
                 lanes.with(|lane| lane.trace_line(&samples, &rays, &mut outcomes, &mut tally));
                 (rays, outcomes, tally)

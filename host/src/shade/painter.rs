@@ -218,6 +218,7 @@ mod tests {
     use crate::scene::model::Model;
     use crate::scene::polygon::Polygon;
     use crate::settings::Settings;
+    use std::sync::atomic::AtomicBool;
 
     /// A lane that answers every ray alike.
     struct Answers(Outcome);
@@ -294,7 +295,8 @@ mod tests {
         let mut scene = floor(0.0);
         scene.materials[1].diffuse = 0.5;
         scene.lights = vec![Light { position: Some([0.0, 0.0, 3.0]), shadow: Shadow::Rays, ..Light::default() }];
-        let shadows = Shadows::prepare(&Model::default(), &scene, &Settings::default(), DOWN.origin);
+        let shadows =
+            Shadows::prepare(&Model::default(), &scene, &Settings::default(), DOWN.origin, &AtomicBool::new(false));
         let (shadows, _) = shadows.expect("there is no map");
         let painter = Painter::new(Rgb, DOWN.origin, &scene, &shadows);
         let gave_up = Outcome::GaveUp { limit: "nodes", best: None };

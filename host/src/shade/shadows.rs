@@ -3,6 +3,8 @@
 //! Of a light with a map the map is asked; of one with rays, a ray from the point to the light. Polygons keep the light from
 //! points in either case, by plain intersection.
 
+use std::sync::atomic::AtomicBool;
+
 use patchray::frame::{Aabb, exact_origin};
 use patchray::scalar::Scalar;
 
@@ -67,7 +69,8 @@ pub static NO_SHADOWS: Shadows = Shadows { casts: Vec::new(), clear: Clear { tol
 
 impl Shadows {
     /// The shadows of a scene's lights; those without a place are at the eye. Draws the maps, on rayon's current threads, and
-    /// tells what they took; of rays it prepares nothing.
+    /// tells what they took; of rays it prepares nothing. Once `stop` is set, what is not drawn yet is left out, and the
+    /// shadows are of no use.
     ///
     /// # Errors
     /// As [`ShadowMap::draw`].
@@ -76,6 +79,7 @@ impl Shadows {
         appearance: &Appearance,
         settings: &Settings,
         eye: [f64; 3],
+        stop: &AtomicBool,
     ) -> Result<(Self, Vec<MapUsed>), LowerError> {
         let (mut casts, mut maps) = (Vec::new(), Vec::new());
         for (number, light) in appearance.lights.iter().enumerate() {
@@ -84,7 +88,7 @@ impl Shadows {
                 Shadow::Rays => Cast::Rays,
                 Shadow::Map(options) => {
                     let place = light.position.unwrap_or(eye);
-                    let (map, used) = ShadowMap::draw(model, settings, (number, place), options)?;
+                    let (map, used) = ShadowMap::draw(model, settings, (number, place), options, stop)?;
                     maps.push(used);
                     Cast::Map(map)
                 }

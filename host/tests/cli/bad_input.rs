@@ -246,6 +246,22 @@ fn no_output_replaces_an_input_or_another_output() {
     ] {
         folder.fails(words, 2, input);
     }
+    // What a scene names, the command line does not.
+    folder.put(
+        "names.toml",
+        "surfaces = [{ file = \"teapot.bpt\" }]\ncamera = { eye = [8, -9, 8], look_at = [0, 0, 1] }\n",
+    );
+    let teapot = folder.text("teapot.bpt");
+    for words in [
+        "render names.toml -o teapot.bpt",
+        "render names.toml -o a.png --stats teapot.bpt",
+        "query names.toml rays.csv -o teapot.bpt",
+        "info names.toml -o ./teapot.bpt",
+        "bake names.toml --rust teapot.bpt",
+    ] {
+        folder.fails(words, 2, input);
+    }
+    assert_eq!(folder.text("teapot.bpt"), teapot);
     folder.fails("query teapot.bpt rays.csv -o a.csv --stats ./a.csv", 2, &["name the same file"]);
     assert_eq!(folder.text("rays.csv"), rays);
     folder.done("query teapot.bpt rays.csv -o /dev/null --stats /dev/null");

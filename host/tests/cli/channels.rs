@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use patchray_host::channels::{Channels, Values, read, seen};
 
-use super::{Folder, printed};
+use super::{Folder, printed, said};
 
 fn channels(folder: &Folder, name: &str) -> Channels {
     read::read(&folder.path(name)).expect("it was written")
@@ -62,9 +62,11 @@ fn channels_say_what_statistics_do() {
 fn a_heat_map_has_its_legend() {
     let folder = Folder::new();
     folder.done("render scene.toml --aov clip_steps=heat.png --aov path=path.png --aov all.exr -o a.png");
-    for name in ["heat.png", "path.png"] {
-        assert_eq!(channels(&folder, name).size, [420, 48 + 36]);
-    }
+    assert_eq!(channels(&folder, "heat.png").size, [420, 48 + 36]);
+    // Its codes take more than a line.
+    let [width, height] = channels(&folder, "path.png").size;
+    assert!(width == 420 && [48 + 48, 48 + 60].contains(&height), "{width} x {height}");
+    folder.fails("render scene.toml --aov u=all.exr -o b.png", 2, &["u=FILE.png for `u` as a heat map"]);
     folder.fails("render scene.toml --aov steps=b.png -o b.png", 2, &["no channel `steps`", "newton_steps"]);
     folder.fails("render scene.toml --aov u=b.png -o b.png", 2, &["-o and --aov name the same file"]);
     folder.fails("render scene.toml --method clipping --aov patch=p.png -o b.png", 2, &["no channel `patch`"]);
@@ -79,7 +81,9 @@ fn differences_are_told() {
         assert!(printed(&folder.done(same)).ends_with("0 of 3072 pixels differ\n"), "{same}");
     }
     assert!(printed(&folder.done("diff a.png a.png -q")).is_empty());
-    folder.fails("diff a.exr b.exr", 1, &["pixels differ"]);
+    let output = folder.run("diff a.exr b.exr");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(printed(&output).contains(" of 3072 pixels differ\n") && said(&output).is_empty(), "{}", said(&output));
     let output = folder.run("diff a.exr b.exr --json");
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!((output.status.code(), &json["only_in_second"][0]), (Some(1), &"patch".into()));
@@ -89,7 +93,10 @@ fn differences_are_told() {
     folder.fails("diff a.png none.png", 3, &["none.png"]);
     folder.fails("diff a.png b.png --tolerance nan", 2, &["finite"]);
     folder.fails("diff a.png b.png -o a.png", 2, &["would replace an input"]);
-    assert_eq!(folder.run("diff a.png c.png -q").status.code(), Some(1));
+    for quiet in ["diff a.png c.png -q", "diff a.exr b.exr -q"] {
+        let output = folder.run(quiet);
+        assert_eq!((output.status.code(), printed(&output) + &said(&output)), (Some(1), String::new()));
+    }
     let marked = folder.run("diff a.png b.exr -o marked.png");
     assert_eq!(marked.status.code(), Some(1));
     let shown = std::fs::read(folder.path("marked.png")).expect("it was written");
@@ -160,6 +167,9 @@ fn a_pixel_tells_its_story() {
         assert!(long.contains(part), "{part} is not in\n{long}");
     }
     assert!(printed(&folder.done("render scene.toml --pixel 0,0 --explain")).contains("it meets nothing"));
+    for flag in ["-o a.png", "--stats a.json", "--json"] {
+        folder.fails(&format!("render scene.toml --pixel 0,0 {flag}"), 2, &["leave out -o, --stats and --json"]);
+    }
     let samples = printed(&folder.done("render scene.toml --pixel 32,30 --samples jittered"));
     assert!(samples.contains("sample 4 of 4"));
     folder.fails("render scene.toml --pixel 64,0", 2, &["no pixel 64,0", "64 x 48"]);
