@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use crate::scene::teapot;
     use crate::scene::trace::Acceptance;
-    use crate::settings::Name;
+    use crate::settings::bounds::Name;
 
     #[test]
     fn the_camera_sees_the_whole_model() {
