@@ -42,6 +42,8 @@ pub struct Root {
     pub margin: f64,
     /// How far the root may be off along the ray by rounding, in units of the model's diagonal.
     pub blur: f64,
+    /// The cosine of the angle between ray and normal, at least 0; 0 where there is no normal.
+    pub cosine: f64,
 }
 
 /// What a ray meets.
@@ -244,6 +246,7 @@ impl<R: Real> OracleIn<R> {
             surface: r.surface,
             margin: r.margin / self.diagonal,
             blur: r.blur / self.diagonal,
+            cosine: r.cosine,
         });
         Verdict {
             roots: roots.collect(),

@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use super::truth;
-use crate::judge::{Agreement, Truth, allowance};
+use crate::judge::{Agreement, Allowance, Truth, allowance};
 use crate::scanline::Outcome;
 use crate::scene::rays::RayLine;
 use crate::scene::trace::Precision;
@@ -69,14 +69,17 @@ impl<'c> Judge<'c> {
         4.0 * self.unit() * t.abs() * x.hypot(y).hypot(z)
     }
 
-    pub(super) fn agreement(&self, outcome: &Outcome, truth: &Truth, ray: &RayLine) -> Agreement {
-        let mut allowance = allowance(self.precision);
+    /// How far a right answer may be off along a ray.
+    pub fn allowance(&self, truth: &Truth, ray: &RayLine) -> Allowance {
+        let Allowance { across, most } = allowance(self.precision);
         let slack = truth.closest.map_or(0.0, |t| self.slack(t, ray)) / self.diagonal;
-        allowance.across += slack;
         // Where three roots all but fall together, a third of the digits is all that rounding leaves.
-        allowance.most = f64::max(allowance.most, self.unit().cbrt()) + slack;
+        Allowance { across: across + slack, most: f64::max(most, self.unit().cbrt()) + slack }
+    }
+
+    pub(super) fn agreement(&self, outcome: &Outcome, truth: &Truth, ray: &RayLine) -> Agreement {
         let mut agreement = Agreement::default();
-        agreement.add(outcome, truth, ray.direction, self.diagonal, &allowance);
+        agreement.add(outcome, truth, ray.direction, self.diagonal, &self.allowance(truth, ray));
         agreement
     }
 

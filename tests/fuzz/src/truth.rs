@@ -44,15 +44,22 @@ pub(crate) fn none_lost(case: &Case, ray: &RayLine, answers: &[(String, Outcome)
     let sure = Judge::new(&stress, &rays, case.precision);
     // What moving the ray by as much as roots may lie off it changes is no loss: in `f32`, of weights far apart, that is more than
     // the judge's least margin.
-    let margin = sure.truth(0).map_or(0.0, |truth| truth.margin) * sure.diagonal();
-    if case.model.surfaces.iter().any(|surface| blur(surface, case) > margin) {
+    let truth = sure.truth(0).copied().unwrap_or_default();
+    let margin = truth.margin * sure.diagonal();
+    let blur = case.model.surfaces.iter().map(|surface| blur(surface, case)).fold(0.0, f64::max);
+    if blur > margin {
+        return;
+    }
+    // At a shallow angle the same moves the root along the ray by more than the judge lets pass of any.
+    let most = sure.allowance(&truth, ray).most * sure.diagonal();
+    if verdict.roots.first().is_some_and(|root| blur > most * root.cosine) {
         return;
     }
     for (name, outcome) in answers {
         assert!(
             !sure.is_lost(0, outcome),
             "{name} answers {outcome:?}, the oracle {:?}; case {:?}, ray {ray:?}, surfaces {:?}",
-            sure.truth(0),
+            truth,
             (case.precision, case.numbers),
             case.model.surfaces
         );
