@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::load::{self, Loaded};
-use super::outputs::check_all;
+use super::outputs::Outputs;
 use super::{Failure, say};
 use crate::lower::Stages;
 use crate::output;
@@ -42,10 +42,8 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     }
     let named = [("--rust", rust), ("--c", c)].map(|(flag, path)| Some((flag, path.as_deref()?)));
     let named: Vec<_> = named.into_iter().flatten().collect();
-    check_all(None, &named, &[file], flags)?;
-    let loaded = load::scene_or_patches(file, flags)?;
-    check_all(None, &named, &loaded.inputs(), flags)?;
-    let Loaded { model, settings, .. } = loaded;
+    let outputs = Outputs::new(None, &named, flags)?;
+    let Loaded { model, settings, .. } = load::scene_or_patches(file, flags, &outputs)?;
     let prepared = Prepared::build(&model, Stages::of(settings.method), &settings)?;
     let baked = prepared.baked(settings.method);
     let name = name(file);

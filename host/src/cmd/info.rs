@@ -21,7 +21,7 @@ use serde::Serialize;
 
 use super::Failure;
 use super::load::{self, Loaded, LoadedFile};
-use super::outputs::check_outputs;
+use super::outputs::Outputs;
 use crate::lower::{LowerError, Stages};
 use crate::memory::Bytes;
 use crate::output::Output;
@@ -144,9 +144,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let output = flags.output.as_deref().unwrap_or(Path::new("-"));
     // What is printed is one thing, in one form or the other.
     let one = Flags { json: false, ..flags.clone() };
-    check_outputs(Some(output), &[file], &one)?;
-    let loaded = load::scene_or_patches(file, flags)?;
-    check_outputs(Some(output), &loaded.inputs(), &one)?;
+    let loaded = load::scene_or_patches(file, flags, &Outputs::new(Some(output), &[], &one)?)?;
     let mut out = Output::create(output)?;
     let info = Info::of(file, &loaded)?;
     let text = if flags.json { to_json(&info) } else { info.to_text() };

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
+use super::outputs::Outputs;
 use super::{Failure, say};
 use crate::lower::{LowerError, Stages};
 use crate::prepared::{Prepared, unfit_for};
@@ -42,19 +43,21 @@ pub struct LoadedFile {
 /// Loads a scene file, which `.toml` at the end of its name says it is, or else a patch file.
 ///
 /// # Errors
-/// A file is refused.
-pub fn scene_or_patches(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
+/// A file is refused, or one of `outputs` would replace it.
+pub(crate) fn scene_or_patches(path: &Path, flags: &Flags, outputs: &Outputs) -> Result<Loaded, Failure> {
     let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-    if is_scene { scene(path, flags) } else { patches(path, flags) }
+    if is_scene { scene(path, flags, outputs) } else { patches(path, flags, outputs) }
 }
 
 /// Loads a scene file and the patch files that it names.
 ///
 /// # Errors
-/// A file is refused.
-pub fn scene(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
+/// A file is refused, or one of `outputs` would replace it.
+pub(crate) fn scene(path: &Path, flags: &Flags, outputs: &Outputs) -> Result<Loaded, Failure> {
+    outputs.spare([path])?;
     let scene = file::read(path, flags.on_invalid())?;
     let Scene { source, description, model, files, appearance } = scene;
+    outputs.spare(files.iter().map(|file| file.path.as_path()))?;
     let settings = Settings::of_scene(flags, &description.trace, &source)?;
     for file in &files {
         name_skipped(&file.skipped);
@@ -71,8 +74,9 @@ pub fn scene(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
 /// Loads a patch file; `-` is standard input.
 ///
 /// # Errors
-/// The file is refused.
-pub fn patches(path: &Path, flags: &Flags) -> Result<Loaded, Failure> {
+/// The file is refused, or one of `outputs` would replace it.
+pub(crate) fn patches(path: &Path, flags: &Flags, outputs: &Outputs) -> Result<Loaded, Failure> {
+    outputs.spare([path])?;
     let file = patches::read(path, flags.on_invalid())?;
     name_skipped(&file.skipped);
     let name = path.display().to_string();
@@ -153,11 +157,6 @@ impl Loaded {
     /// The file that holds the surface with this index in the model.
     pub fn file_of(&self, index: usize) -> Option<&LoadedFile> {
         self.files.iter().find(|file| file.surfaces.contains(&index))
-    }
-
-    /// The files that the surfaces come from: beside what the command line names, nothing is to be written over them.
-    pub(crate) fn inputs(&self) -> Vec<&Path> {
-        self.files.iter().map(|file| Path::new(&file.name)).collect()
     }
 
     /// The number in its file of the surface with this index in the model.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::outputs::check_outputs;
+use super::outputs::{Outputs, only_png};
 use super::{Failure, say};
 use crate::output;
 use crate::picture::part::{Part, PartError};
@@ -30,8 +30,8 @@ pub struct MergeArgs {
 /// A file that is no part, or of another picture; rows that are in none; or an output that cannot be written.
 pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let MergeArgs { parts, output, quiet } = args;
-    let inputs: Vec<_> = parts.iter().map(PathBuf::as_path).collect();
-    check_outputs(Some(output), &inputs, &Flags::default())?;
+    only_png(output)?;
+    Outputs::new(Some(output), &[], &Flags::default())?.spare(parts.iter().map(PathBuf::as_path))?;
     let mut whole: Option<Part> = None;
     for path in parts {
         let refused = |reason: PartError| Failure::Refused {

@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use image::ImageFormat;
 use serde::Serialize;
 
 use super::Failure;
@@ -17,43 +18,60 @@ fn place(path: &Path) -> PathBuf {
     path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_owned())
 }
 
-/// Refuses flags that send more than one thing to standard output, two things to one file, or anything to an input.
-pub(crate) fn check_outputs(output: Option<&Path>, inputs: &[&Path], flags: &Flags) -> Result<(), Failure> {
-    check_all(output, &[], inputs, flags)
+fn usage(message: &str, help: &str) -> Failure {
+    Failure::Usage { message: message.to_owned(), help: help.to_owned() }
 }
 
-/// The same of a verb with more outputs than one, each of its own flag.
-pub(crate) fn check_all(
-    output: Option<&Path>,
-    more: &[(&str, &Path)],
-    inputs: &[&Path],
-    flags: &Flags,
-) -> Result<(), Failure> {
-    let usage = |message: &str, help: &str| Err(Failure::Usage { message: message.to_owned(), help: help.to_owned() });
-    let named = [("-o", output), ("--stats", flags.stats.as_deref())];
-    let named = named.into_iter().filter_map(|(flag, path)| Some((flag, path?))).chain(more.iter().copied());
-    let (to_stdout, to_files): (Vec<_>, Vec<_>) = named.partition(|(_, path)| *path == Path::new("-"));
-    if to_stdout.len() + usize::from(flags.json) > 1 {
-        return usage("two outputs would go to standard output", "name a file for one of them, with -o or --stats");
-    }
-    let mut taken: Vec<(&str, PathBuf)> = Vec::new();
-    for (flag, path) in to_files {
-        let place = place(path);
-        // A device such as /dev/null takes any number of outputs.
-        let holds_one = !place.exists() || place.is_file();
-        if let Some((other, _)) = taken.iter().find(|(_, other)| holds_one && *other == place) {
-            let both = if *other == flag { format!("two {flag}") } else { format!("{other} and {flag}") };
-            return usage(&format!("{both} name the same file"), "name two files");
+/// The files that a verb will write, each with the flag that names it: no two are one. Whatever reads an input is given them,
+/// so that none is written over.
+#[derive(Debug, Default)]
+pub(crate) struct Outputs<'f>(Vec<(&'f str, PathBuf)>);
+
+impl<'f> Outputs<'f> {
+    /// Those of `-o` and of the flags, and `more`, each with its own flag.
+    ///
+    /// # Errors
+    /// More than one would go to standard output, or two to one file.
+    pub(crate) fn new(output: Option<&Path>, more: &[(&'f str, &Path)], flags: &Flags) -> Result<Self, Failure> {
+        let named = [("-o", output), ("--stats", flags.stats.as_deref())];
+        let named = named.into_iter().filter_map(|(flag, path)| Some((flag, path?))).chain(more.iter().copied());
+        let (to_stdout, to_files): (Vec<_>, Vec<_>) = named.partition(|(_, path)| *path == Path::new("-"));
+        if to_stdout.len() + usize::from(flags.json) > 1 {
+            let help = "name a file for one of them, with -o or --stats";
+            return Err(usage("two outputs would go to standard output", help));
         }
-        taken.push((flag, place));
-    }
-    let inputs = inputs.iter().filter(|input| **input != Path::new("-")).map(|input| place(input));
-    for input in inputs.filter(|input| input.is_file()) {
-        if let Some((flag, _)) = taken.iter().find(|(_, place)| *place == input) {
-            return usage("an output would replace an input", &format!("name another file with {flag}"));
+        let mut taken: Vec<(&str, PathBuf)> = Vec::new();
+        for (flag, path) in to_files {
+            let place = place(path);
+            // A device such as /dev/null takes any number of outputs.
+            let holds_one = !place.exists() || place.is_file();
+            if let Some((other, _)) = taken.iter().find(|(_, other)| holds_one && *other == place) {
+                let both = if *other == flag { format!("two {flag}") } else { format!("{other} and {flag}") };
+                return Err(usage(&format!("{both} name the same file"), "name two files"));
+            }
+            taken.push((flag, place));
         }
+        Ok(Outputs(taken))
     }
-    Ok(())
+
+    /// Refuses inputs that one of them would replace.
+    pub(crate) fn spare<'p>(&self, inputs: impl IntoIterator<Item = &'p Path>) -> Result<(), Failure> {
+        let inputs = inputs.into_iter().filter(|input| *input != Path::new("-")).map(place);
+        for input in inputs.filter(|input| input.is_file()) {
+            if let Some((flag, _)) = self.0.iter().find(|(_, place)| *place == input) {
+                return Err(usage("an output would replace an input", &format!("name another file with {flag}")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Refuses the name of a picture that promises another format than PNG.
+pub(crate) fn only_png(path: &Path) -> Result<(), Failure> {
+    match ImageFormat::from_path(path) {
+        Ok(ImageFormat::Png) | Err(_) => Ok(()),
+        Ok(_) => Err(usage("pictures are written as PNG", "name a file that ends in .png; `--aov` writes OpenEXR")),
+    }
 }
 
 /// The open outputs for [`Stats`].
@@ -88,7 +106,7 @@ mod tests {
         let flags = Flags::default();
         let refused = |more: &[(&str, &str)]| {
             let more: Vec<_> = more.iter().map(|&(flag, path)| (flag, Path::new(path))).collect();
-            check_all(Some(Path::new("a.png")), &more, &[], &flags).is_err()
+            Outputs::new(Some(Path::new("a.png")), &more, &flags).is_err()
         };
         assert!(!refused(&[("--aov", "b.png"), ("--aov", "c.png")]));
         assert!(refused(&[("--aov", "a.png")]) && refused(&[("--aov", "b.png"), ("--aov", "./b.png")]));

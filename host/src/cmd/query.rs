@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::load::{self, Loaded};
-use super::outputs::{StatsOutputs, check_outputs};
+use super::outputs::{Outputs, StatsOutputs};
 use super::{Failure, pool, progress, say, say_gave_up, summary};
 use crate::batch::Batch;
 use crate::number::Number;
@@ -82,9 +82,9 @@ pub fn run(args: &QueryArgs) -> Result<(), Failure> {
         return Err(only_the_closest());
     }
     let output = flags.output.as_deref().unwrap_or(Path::new("-"));
-    check_outputs(Some(output), &[patches, rays], flags)?;
-    let loaded = load::scene_or_patches(patches, flags)?;
-    check_outputs(Some(output), &loaded.inputs(), flags)?;
+    let outputs = Outputs::new(Some(output), &[], flags)?;
+    outputs.spare([rays.as_path()])?;
+    let loaded = load::scene_or_patches(patches, flags, &outputs)?;
     let settings = &loaded.settings;
     if settings.method.needs_view() {
         return Err(only_views(settings.method));

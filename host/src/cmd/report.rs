@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::outputs::{StatsOutputs, check_outputs};
+use super::outputs::{Outputs, StatsOutputs};
 use super::study::refused;
 use super::{Failure, say};
 use crate::output;
@@ -41,7 +41,7 @@ pub fn run(args: &ReportArgs) -> Result<(), Failure> {
     let path = args.output.clone().unwrap_or_else(|| args.folder.join("report.html"));
     let flags = Flags { stats: args.stats.clone(), json: args.json, ..Flags::default() };
     let files = folder.files();
-    check_outputs(Some(&path), &files.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &flags)?;
+    Outputs::new(Some(&path), &[], &flags)?.spare(files.iter().map(PathBuf::as_path))?;
     let stats_outputs = StatsOutputs::create(&flags)?;
     let (records, missing) = folder.read_all();
     let report = StudyReport { manifest: folder.manifest.clone(), records, missing };

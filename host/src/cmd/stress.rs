@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::outputs::{StatsOutputs, check_outputs};
+use super::outputs::{Outputs, StatsOutputs};
 use super::{Failure, pool, progress};
 use crate::output::{self, Output};
 use crate::report::stress::{Report, families};
@@ -78,7 +78,7 @@ pub fn run(args: &StressArgs) -> Result<(), Failure> {
         return Ok(output::write(stdout, |out| out.write_all(text.as_bytes()))?);
     }
     let output = flags.output.as_deref().or((!flags.json && flags.stats.as_deref() != Some(stdout)).then_some(stdout));
-    check_outputs(output, &[], flags)?;
+    Outputs::new(output, &[], flags)?;
     let stats_outputs = StatsOutputs::create(flags)?;
     let mut out = output.map(Output::create).transpose()?;
 

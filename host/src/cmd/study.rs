@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::outputs::StatsOutputs;
+use super::outputs::{Outputs, StatsOutputs};
 use super::{Failure, load, pool, progress, say};
 use crate::oracle::Oracle;
 use crate::output;
@@ -83,16 +83,15 @@ struct Done {
 pub fn run(args: &StudyArgs) -> Result<(), Failure> {
     let StudyArgs { repetitions, flags, .. } = args;
     let stdout = Path::new("-");
-    if flags.json && flags.stats.as_deref() == Some(stdout) {
-        return Err(usage("two outputs would go to standard output", "name a file with --stats"));
-    }
+    // Results go to a folder, which replaces no input.
+    let outputs = Outputs::new(None, &[], flags)?;
     let cells = cells(args)?;
     if args.list {
         let ids: Vec<String> = cells.iter().map(Cell::id).collect();
         let text = if flags.json { to_json(&ids) } else { ids.join("\n") + "\n" };
         return Ok(output::write(stdout, |out| out.write_all(text.as_bytes()))?);
     }
-    let subject = subject(args)?;
+    let subject = subject(args, &outputs)?;
     if let Some(pixel) = args.pixel {
         let [cell] = cells[..] else {
             return Err(usage("--pixel is of one cell", "name it with --only ID; --list prints all names"));
@@ -170,7 +169,7 @@ fn cells(args: &StudyArgs) -> Result<Vec<Cell>, Failure> {
 }
 
 /// What the study is of.
-fn subject(args: &StudyArgs) -> Result<Subject, Failure> {
+fn subject(args: &StudyArgs, outputs: &Outputs) -> Result<Subject, Failure> {
     let StudyArgs { scene, size, flags, .. } = args;
     let size = size.size.unwrap_or(SIZE);
     let words = words_of(flags);
@@ -186,7 +185,7 @@ fn subject(args: &StudyArgs) -> Result<Subject, Failure> {
             words,
         });
     };
-    let loaded = load::scene_or_patches(path, flags)?;
+    let loaded = load::scene_or_patches(path, flags, outputs)?;
     let camera = loaded.scene.as_ref().map_or_else(|| camera_of(&loaded.model), |(description, _)| description.camera);
     let shown = path.display().to_string();
     Ok(Subject {

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::outputs::{StatsOutputs, check_outputs};
+use super::outputs::{Outputs, StatsOutputs};
 use super::{Failure, pool, progress};
 use crate::judge;
 use crate::measure::{Primary, Scene, passes};
@@ -57,7 +57,7 @@ pub fn run(args: &TablesArgs) -> Result<(), Failure> {
     }
     let stdout = Path::new("-");
     let output = flags.output.as_deref().or((!flags.json && flags.stats.as_deref() != Some(stdout)).then_some(stdout));
-    check_outputs(output, &[], flags)?;
+    Outputs::new(output, &[], flags)?;
     let stats_outputs = StatsOutputs::create(flags)?;
     let mut out = output.map(Output::create).transpose()?;
 

@@ -258,6 +258,8 @@ fn no_output_replaces_an_input_or_another_output() {
         "query names.toml rays.csv -o teapot.bpt",
         "info names.toml -o ./teapot.bpt",
         "bake names.toml --rust teapot.bpt",
+        "study names.toml -o results --stats teapot.bpt",
+        "study teapot.bpt -o results --stats ./teapot.bpt",
     ] {
         folder.fails(words, 2, input);
     }
@@ -265,6 +267,20 @@ fn no_output_replaces_an_input_or_another_output() {
     folder.fails("query teapot.bpt rays.csv -o a.csv --stats ./a.csv", 2, &["name the same file"]);
     assert_eq!(folder.text("rays.csv"), rays);
     folder.done("query teapot.bpt rays.csv -o /dev/null --stats /dev/null");
+}
+
+/// A picture named `a.jpg` once was a PNG, which some viewers refuse.
+#[test]
+fn a_picture_is_not_named_after_another_format() {
+    let folder = Folder::new();
+    let format = &["pictures are written as PNG", "--aov"];
+    for words in ["render scene.toml -o a.jpg", "render scene.toml -o a.EXR", "--size 4x4 -o a.tiff"] {
+        folder.fails(words, 2, format);
+    }
+    folder.done("render scene.toml --size 4x4 -o a.PNG");
+    folder.fails("diff a.PNG a.PNG -o b.webp", 2, format);
+    folder.fails("merge a.PNG -o b.gif", 2, format);
+    folder.done("render scene.toml --size 4x4 -o a");
 }
 
 #[cfg(unix)]
