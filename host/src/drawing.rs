@@ -16,7 +16,7 @@ use crate::scene::appearance::Appearance;
 use crate::scene::camera::View;
 use crate::scene::model::Model;
 use crate::settings::Settings;
-use crate::shade::painter::{self, Colour, Painter};
+use crate::shade::painter::{self, Colour, Painted, Painter};
 use crate::shade::shadows::Shadows;
 use crate::shade::spectrum::{Basis, Rgb, Sampled};
 use crate::stats::RaysByKind;
@@ -36,6 +36,8 @@ pub struct Drawn {
     pub tally: Tally,
     /// All rays, by what they are for.
     pub rays: RaysByKind,
+    /// Those of them that have no answer.
+    pub gave_up: RaysByKind,
     /// In how many parts light was counted.
     pub light_samples: u32,
 }
@@ -47,6 +49,7 @@ struct Row {
     outcomes: Vec<Outcome>,
     tally: Tally,
     rays: RaysByKind,
+    gave_up: RaysByKind,
     refused: Option<([u32; 2], RayError)>,
 }
 
@@ -114,8 +117,9 @@ fn draw_in<const N: usize>(
             let shadow = any.as_mut().map(|lane| &mut **lane as &mut dyn Lane);
             let painted = painter.paint(painter::Lanes { mirrored: lane, shadow }, &rays, &outcomes);
             lines.push(painted.colours);
-            row.rays.mirrored += painted.mirrored;
-            row.rays.shadow += painted.shadow;
+            let Painted { mirrored, shadow, .. } = painted;
+            row.rays += RaysByKind { mirrored: mirrored.rays, shadow: shadow.rays, ..RaysByKind::default() };
+            row.gave_up += RaysByKind { mirrored: mirrored.gave_up, shadow: shadow.gave_up, ..RaysByKind::default() };
             let refused = outcomes.iter().enumerate().find_map(|(sample, outcome)| match outcome {
                 Outcome::Refused(error) => Some(([sample as u32 / side, py], *error)),
                 _ => None,
@@ -146,18 +150,20 @@ fn draw_in<const N: usize>(
         outcomes: Vec::new(),
         tally: Tally::default(),
         rays: RaysByKind::default(),
+        gave_up: RaysByKind::default(),
         refused: None,
         light_samples: N as u32,
     };
-    for (_, Row { pixels, outcomes, tally, rays, refused }) in drawn_rows {
+    for (_, Row { pixels, outcomes, tally, rays, gave_up, refused }) in drawn_rows {
         drawn.picture.push_row(&pixels);
         drawn.outcomes.extend(outcomes);
         drawn.tally.add(&tally);
-        drawn.rays.mirrored += rays.mirrored;
-        drawn.rays.shadow += rays.shadow;
+        drawn.rays += rays;
+        drawn.gave_up += gave_up;
         drawn.refused = drawn.refused.or(refused);
     }
     drawn.rays.camera = drawn.tally.rays;
+    drawn.gave_up.camera = drawn.tally.gave_up_in_all();
     drawn
 }
 

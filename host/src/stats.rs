@@ -1,6 +1,7 @@
 //! What a run did, as JSON: the file that `--stats` writes and `--json` prints.
 
 use std::collections::BTreeMap;
+use std::ops::AddAssign;
 
 use patchray::limits::Work;
 use serde::Serialize;
@@ -43,6 +44,15 @@ pub struct RaysByKind {
     pub map: u64,
 }
 
+impl AddAssign for RaysByKind {
+    fn add_assign(&mut self, other: Self) {
+        self.camera += other.camera;
+        self.mirrored += other.mirrored;
+        self.shadow += other.shadow;
+        self.map += other.map;
+    }
+}
+
 /// The methods of a picture's rays, by what the rays are for; of none that there are not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct MethodsByKind {
@@ -80,6 +90,9 @@ pub struct Stats {
     /// Rays by what they are for, for a picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rays_by_kind: Option<RaysByKind>,
+    /// Those of them that have no answer. Pixels that need them show it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gave_up_by_kind: Option<RaysByKind>,
     /// In how many parts light was counted, for a picture: 3 (red, green and blue), or 9 samples of its spectrum where
     /// something is of metal.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -175,6 +188,7 @@ impl Stats {
             samples: None,
             rows: None,
             rays_by_kind: None,
+            gave_up_by_kind: None,
             light_samples: None,
             methods_by_kind: None,
             shadow_maps: Vec::new(),

@@ -204,6 +204,18 @@ fn a_map_without_bias_specks_a_sphere() {
     assert!(specks > 100, "{specks}");
 }
 
+/// Ctrl-C once waited for maps, which of many lights may take longer than the picture.
+#[test]
+fn maps_heed_a_stop() {
+    let scene = scene(SPHERE, Shadow::Map(MapOptions { size: 64, bias: 1.0 }));
+    let rays = |stop: bool| {
+        let (settings, eye) = (Settings::default(), scene.description.camera.view([8, 8]).eye);
+        let prepared = Shadows::prepare(&scene.model, &scene.appearance, &settings, eye, &AtomicBool::new(stop));
+        prepared.expect("there is memory").1.iter().map(|map| map.rays).sum::<u64>()
+    };
+    assert_eq!((rays(false), rays(true)), (64 * 64, 0));
+}
+
 /// The shares of the first light that arrive at these points, each with its normal.
 fn shares(scene: &Scene, settings: &Settings, points: &[[[f64; 3]; 2]]) -> (Vec<Option<f64>>, Vec<MapUsed>) {
     let (appearance, view) = (&scene.appearance, scene.description.camera.view([8, 8]));

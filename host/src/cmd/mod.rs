@@ -185,4 +185,16 @@ pub(crate) fn say_gave_up(stats: &Stats) {
     for (limit, count) in &stats.gave_up_by_limit {
         say(format_args!("{count} of {} rays gave up: the limit on {limit} ran out", stats.rays));
     }
+    let (Some(gave_up), Some(rays)) = (stats.gave_up_by_kind, stats.rays_by_kind) else {
+        return;
+    };
+    for (what, count, of) in [
+        ("mirrored rays", gave_up.mirrored, rays.mirrored),
+        ("rays to lights", gave_up.shadow, rays.shadow),
+        ("rays of shadow maps", gave_up.map, rays.map),
+    ] {
+        if count > 0 {
+            say(format_args!("{count} of {of} {what} have no answer: pixels that need them show it"));
+        }
+    }
 }

@@ -130,6 +130,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     stats.samples = Some(view.sampling);
     stats.rows = (drawn.rows != all).then(|| drawn.rows.to_string());
     stats.rays_by_kind = Some(RaysByKind { map: maps.iter().map(|map| map.rays).sum(), ..drawn.rays });
+    stats.gave_up_by_kind = Some(RaysByKind { map: maps.iter().map(|map| map.gave_up).sum(), ..drawn.gave_up });
     let method = settings.method;
     stats.methods_by_kind = Some(MethodsByKind {
         camera: method,

@@ -23,7 +23,7 @@ const FLAT: f64 = 1e-6;
 pub enum Fault {
     /// Fewer than three.
     TooFew,
-    /// All on one line, or almost.
+    /// All on one line, or almost; or edges that cross so that as much is turned left as right.
     Thin,
     /// One is off the plane of the others.
     NotPlane,
@@ -170,7 +170,10 @@ impl PolygonTable {
         Polygon::new(vertices).map_err(|fault| {
             let (message, help) = match fault {
                 Fault::TooFew => ("a polygon has at least three vertices", "add the missing ones"),
-                Fault::Thin => ("the vertices of this polygon lie on one line", "move one of them off the line"),
+                Fault::Thin => (
+                    "this polygon has no area",
+                    "write the vertices in their order around it, and not all of them on one line",
+                ),
                 Fault::NotPlane => (
                     "the vertices of this polygon do not lie in one plane",
                     "move the one that is off it, or cut the polygon into triangles",

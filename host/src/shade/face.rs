@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::vector::{cross, dot, subtract, unit};
+use super::vector::{cross, dot, largest, subtract, unit};
 use crate::scanline::Outcome;
 use crate::scene::camera::View;
 use crate::scene::model::Model;
@@ -90,9 +90,7 @@ impl Face {
     /// The six faces of a cube around the light, which see everything.
     pub(super) fn cube(model: &Model, light: [f64; 3], size: u32) -> Vec<Self> {
         let points = model.surfaces.iter().flat_map(|surface| &surface.points);
-        let away =
-            |&[x, y, z, _]: &[f64; 4]| subtract([x, y, z], light).iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let farthest = points.map(away).fold(0.0, f64::max);
+        let farthest = largest(points.map(|&[x, y, z, _]| subtract([x, y, z], light)));
         let unit = if farthest > 0.0 { farthest } else { 1.0 };
         let axis = |k: usize, sign: f64| [0, 1, 2].map(|j| if j == k { sign } else { 0.0 });
         let forward = (0..3).flat_map(|k| [axis(k, 1.0), axis(k, -1.0)]);

@@ -6,7 +6,7 @@
 
 use super::Shader;
 use super::finish::{Finish, Mirror};
-use super::shadows::{Shadows, Visibility};
+use super::shadows::{Count, Shadows, Visibility};
 use super::spectrum::Basis;
 use crate::scanline::{Lane, Outcome, Tally};
 use crate::scene::appearance::{Appearance, Material};
@@ -38,10 +38,10 @@ pub struct Painter<'s, B, const N: usize> {
 pub struct Painted {
     /// A colour for each ray.
     pub colours: Vec<Colour>,
-    /// The number of mirrored rays that were traced.
-    pub mirrored: u64,
-    /// The number of rays to lights that were traced.
-    pub shadow: u64,
+    /// The rays that mirrors sent on.
+    pub mirrored: Count,
+    /// The rays to lights.
+    pub shadow: Count,
 }
 
 /// What traces the rays that painting asks for.
@@ -104,11 +104,12 @@ impl<'s, B: Basis<N>, const N: usize> Painter<'s, B, N> {
                 mirrored.push(ray);
             }
         }
+        let mut outcomes = Vec::with_capacity(mirrored.len());
         if !mirrored.is_empty() {
-            let mut outcomes = Vec::with_capacity(mirrored.len());
             lanes.mirrored.trace(&mirrored, false, &mut outcomes, &mut Tally::default());
             sights.extend(mirrored.iter().zip(&outcomes).map(|(ray, outcome)| self.sight(ray, outcome)));
         }
+        let mirrored = Count::of(mirrored.len(), &outcomes);
         let (visibility, shadow) = self.lit(lanes.shadow, &sights);
         let own = |k: usize| self.own(sights.get(k)?, visibility.of_point(k));
         // After the last ray that is followed, a metal mirrors the background.
@@ -125,11 +126,11 @@ impl<'s, B: Basis<N>, const N: usize> Painter<'s, B, N> {
             Some((mirror, next)) => Some(mirror.with(own(k)?, last(next)?)),
         };
         let colours = (0..count).map(|k| light(k).map(|light| self.basis.display(light))).collect();
-        Painted { colours, mirrored: mirrored.len() as u64, shadow }
+        Painted { colours, mirrored, shadow }
     }
 
     /// Which lights reach what rays see, and how many rays that took.
-    fn lit(&self, lane: Option<&mut dyn Lane>, sights: &[Sight<N>]) -> (Visibility<'s>, u64) {
+    fn lit(&self, lane: Option<&mut dyn Lane>, sights: &[Sight<N>]) -> (Visibility<'s>, Count) {
         let lights = self.shader.lights();
         let mut visibility = Visibility::new(self.shadows, &self.appearance.polygons, sights.len(), lights);
         for (index, Sight { ray, seen, .. }) in sights.iter().enumerate().filter(|_| self.shadows.any()) {
@@ -307,7 +308,7 @@ mod tests {
             let mut to_light = Answers(answer);
             let lanes = Lanes { mirrored: &mut nothing, shadow: Some(&mut to_light) };
             let painted = painter.paint(lanes, &[DOWN], &[Outcome::Miss]);
-            assert_eq!((painted.colours, painted.shadow), (vec![colour], 1));
+            assert_eq!((painted.colours, painted.shadow.rays), (vec![colour], 1));
         }
     }
 
@@ -329,7 +330,7 @@ mod tests {
             let outcomes = [Outcome::Miss, surface(1.0), Outcome::Miss];
             painter.paint(lanes(&mut Answers(Outcome::Miss)), &[DOWN; 3], &outcomes).mirrored
         };
-        assert_eq!((count(0.0), count(0.5)), (0, 2));
+        assert_eq!((count(0.0).rays, count(0.5).rays), (0, 2));
     }
 
     /// A floor of metal under an even sky, seen at an angle; and what a ray that it mirrors meets.

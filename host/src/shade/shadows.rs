@@ -9,7 +9,7 @@ use patchray::frame::{Aabb, exact_origin};
 use patchray::scalar::Scalar;
 
 use super::map::{MapUsed, ShadowMap};
-use super::vector::subtract;
+use super::vector::{largest, subtract};
 use crate::lower::LowerError;
 use crate::scanline::{Lane, Outcome, Tally};
 use crate::scene::appearance::Appearance;
@@ -34,6 +34,23 @@ enum Cast {
     Nothing,
     Rays,
     Map(ShadowMap),
+}
+
+/// Rays that painting asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Count {
+    /// Their number.
+    pub rays: u64,
+    /// Those without an answer, which pixels show.
+    pub gave_up: u64,
+}
+
+impl Count {
+    /// Of so many rays with these answers, of which there may be fewer.
+    pub(super) fn of(rays: usize, outcomes: &[Outcome]) -> Self {
+        let answered = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Hit(_) | Outcome::Miss)).count();
+        Count { rays: rays as u64, gave_up: rays.saturating_sub(answered) as u64 }
+    }
 }
 
 /// How high above their surface rays to lights begin, so that they do not meet the point that they leave: as much as what is
@@ -117,8 +134,7 @@ impl Clear {
         // The tolerance is one of the kernel's frame, a unit of which is at most twice as long as the largest coordinate.
         let unit = model.control_box().map_or(0.0, |bounds| {
             let origin = exact_origin(&Aabb { low: bounds.min, high: bounds.max });
-            let corners = [bounds.min, bounds.max].map(|corner| subtract(corner, origin));
-            2.0 * corners.as_flattened().iter().fold(0.0, |most: f64, c| most.max(c.abs()))
+            2.0 * largest([bounds.min, bounds.max].map(|corner| subtract(corner, origin)))
         });
         Clear { tolerance: settings.tolerance.unwrap_or(tolerance) * unit, epsilon }
     }
@@ -126,8 +142,7 @@ impl Clear {
     /// The ray from a point to the light, `from` being where the ray came from that found the point.
     fn ray(&self, facing: &Facing, from: [f64; 3]) -> RayLine {
         let Facing { point, normal, light, .. } = *facing;
-        let largest = [point, from].as_flattened().iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let height = RAISED * (self.tolerance + self.epsilon * largest);
+        let height = RAISED * (self.tolerance + self.epsilon * largest([point, from]));
         let origin = [0, 1, 2].map(|k| point[k] + height * normal[k]);
         RayLine { origin, direction: subtract(light, origin), t_min: 0.0, t_max: 1.0, scan_line: 0, valid: true }
     }
@@ -182,7 +197,7 @@ impl<'s> Visibility<'s> {
     }
 
     /// Traces the rays that are to be traced, by a lane of a tracer of any hits; without one they are given up. Their number.
-    pub fn trace(&mut self, lane: Option<&mut dyn Lane>) -> u64 {
+    pub fn trace(&mut self, lane: Option<&mut dyn Lane>) -> Count {
         let mut outcomes = Vec::with_capacity(self.rays.len());
         if let Some(lane) = lane.filter(|_| !self.rays.is_empty()) {
             lane.trace(&self.rays, false, &mut outcomes, &mut Tally::default());
@@ -196,7 +211,7 @@ impl<'s> Visibility<'s> {
                 };
             }
         }
-        self.rays.len() as u64
+        Count::of(self.rays.len(), &outcomes)
     }
 
     /// For each light the share that arrives at the point with this number; nothing if no light casts a shadow.
@@ -227,7 +242,7 @@ mod tests {
     }
 
     /// What arrives of both lights at the second of two points, which is asked of both.
-    fn asked(polygons: &[(Polygon, usize)], lane: Option<&mut dyn Lane>) -> (Vec<Option<f64>>, u64) {
+    fn asked(polygons: &[(Polygon, usize)], lane: Option<&mut dyn Lane>) -> (Vec<Option<f64>>, Count) {
         let shadows = shadows();
         let mut visibility = Visibility::new(&shadows, polygons, 2, 2);
         visibility.ask([1, 0], &FACING, [5.0; 3]);
@@ -241,11 +256,15 @@ mod tests {
     fn what_a_ray_meets_is_in_the_way_and_giving_up_is_neither() {
         let gave_up = Outcome::GaveUp { limit: "nodes", best: None };
         for (answer, share) in [(Outcome::Miss, Some(1.0)), (gave_up, None), (Outcome::Invalid, None)] {
-            assert_eq!(asked(&[], Some(&mut Answers(answer))), (vec![Some(1.0), share], 1));
+            let count = Count { rays: 1, gave_up: u64::from(share.is_none()) };
+            assert_eq!(asked(&[], Some(&mut Answers(answer))), (vec![Some(1.0), share], count));
         }
         let found = crate::scanline::Found { t: 0.5, u: 0.5, v: 0.5, surface: 0, normal: None, grazing: false };
-        assert_eq!(asked(&[], Some(&mut Answers(Outcome::Hit(found)))), (vec![Some(1.0), Some(0.0)], 1));
-        assert_eq!(asked(&[], None), (vec![Some(1.0), None], 1));
+        assert_eq!(
+            asked(&[], Some(&mut Answers(Outcome::Hit(found)))),
+            (vec![Some(1.0), Some(0.0)], Count { rays: 1, gave_up: 0 })
+        );
+        assert_eq!(asked(&[], None), (vec![Some(1.0), None], Count { rays: 1, gave_up: 1 }));
     }
 
     #[test]
@@ -254,7 +273,7 @@ mod tests {
         for (z, rays) in [(2.0, 0), (0.0, 1), (-1.0, 1), (4.5, 1)] {
             let polygons = [(Polygon::new(square(z)).expect("a polygon"), 0)];
             let (shares, traced) = asked(&polygons, Some(&mut Answers(Outcome::Miss)));
-            assert_eq!((shares[1], traced), (Some(rays as f64), rays), "{z}");
+            assert_eq!((shares[1], traced.rays), (Some(rays as f64), rays), "{z}");
         }
     }
 

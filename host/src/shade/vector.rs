@@ -12,6 +12,11 @@ pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// The largest |coordinate| of these points, 0 of none.
+pub(super) fn largest(points: impl IntoIterator<Item = [f64; 3]>) -> f64 {
+    points.into_iter().flatten().fold(0.0, |most, c| most.max(c.abs()))
+}
+
 /// The vector over its length; zero for a zero vector.
 pub(super) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let length = vector[0].hypot(vector[1]).hypot(vector[2]);

@@ -100,6 +100,23 @@ fn shadows_give_the_same_bytes_with_any_threads() {
     }
 }
 
+/// Magenta pixels once came without a word: only rays of the camera were told.
+#[test]
+fn rays_to_lights_without_an_answer_are_told() {
+    let folder = Folder::new();
+    folder.put("toruses.toml", shadowed());
+    let words = "render toruses.toml --size 24x24 -o a.png --stats a.json --method newton-predicted";
+    let output = folder.done(&format!("{words} --limit nodes=1"));
+    let stats = folder.json("a.json");
+    let (gave_up, rays) = (&stats["gave_up_by_kind"], &stats["rays_by_kind"]);
+    assert!(gave_up["shadow"].as_u64() > Some(0), "{gave_up}");
+    assert_eq!((&gave_up["camera"], &gave_up["mirrored"], &gave_up["map"]), (&0.into(), &0.into(), &0.into()));
+    let told = format!("{} of {} rays to lights have no answer", gave_up["shadow"], rays["shadow"]);
+    assert!(said(&output).contains(&told), "{}", said(&output));
+    assert!(!said(&folder.done(words)).contains("no answer"));
+    assert_eq!(folder.json("a.json")["gave_up_by_kind"]["shadow"], 0);
+}
+
 /// What shadows take is told, and nothing is prepared for those that there are not.
 #[test]
 fn stats_say_what_shadows_took() {

@@ -226,7 +226,7 @@ fn transforms_that_leave_nothing() {
 fn polygons_that_are_none() {
     let with = |vertices: &str| format!("polygons = [{{ vertices = {vertices} }}]\nsurfaces = [{{ {TORUS} }}]");
     scene_refused(&with("[[0, 0, 0], [1, 0, 0]]"), "s.toml:1:26", "a polygon has at least three vertices");
-    scene_refused(&with("[[0, 0, 0], [1, 1, 1], [2, 2, 2]]"), "s.toml:1:26", "lie on one line");
+    scene_refused(&with("[[0, 0, 0], [1, 1, 1], [2, 2, 2]]"), "s.toml:1:26", "has no area");
     scene_refused(&with("[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 1]]"), "s.toml:1:26", "not lie in one plane");
     scene_refused(&with("[[0, 0, 0], [3, 3, 0], [3, 0, 0], [0, 1, 0]]"), "s.toml:1:26", "cross or touch");
     scene_refused(&with("[[0, 0, 0], [1, 0], [0, 1, 0]]"), "s.toml:1:38", "a vertex has 2 numbers");
