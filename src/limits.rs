@@ -138,6 +138,8 @@ impl<S: Scalar> Limits<S> {
         let patches = extent.patches.saturating_mul(walks).min(self.patches);
         let clips = if extent.clipped { self.clip_steps } else { 0 };
         let starts = patches.saturating_mul(starts_per_patch).saturating_add(extent.surfaces);
+        // What proves that a patch holds one root at most finds it, without a start and without a clip.
+        let proved = if extent.clipped { patches } else { 0 };
         let spans = u64::from(extent.spans);
         Work {
             surfaces_tested: extent.surfaces.min(self.surfaces),
@@ -161,7 +163,7 @@ impl<S: Scalar> Limits<S> {
             unresolved: patches,
             excluded: patches,
             handed_over: patches,
-            intersection_points: starts.saturating_add(clips),
+            intersection_points: starts.saturating_add(proved).saturating_add(clips),
             verified: extent.surfaces,
             decided_by_list: extent.surfaces,
             start_failed: extent.surfaces,
@@ -353,6 +355,15 @@ mod tests {
         assert_eq!(spend(&mut counter, 3, Limit::Patches), Err(Limit::Patches));
         assert_eq!(counter, 3);
         assert_eq!(spend(&mut 0, 0, Limit::Patches), Err(Limit::Patches));
+    }
+
+    /// With no starts allowed and no clips, a ray that met 64 patches once was said to find nothing, and found a point in each.
+    #[test]
+    fn a_proof_finds_points_without_a_start() {
+        let limits = Limits { newton_starts: 0, clip_steps: 0, ..Limits::<f32>::default() };
+        let extent = Extent { surfaces: 1, patches: 64, clipped: true, ..Extent::default() };
+        assert_eq!(limits.worst_case(&extent).intersection_points, 65);
+        assert_eq!(limits.worst_case(&Extent { clipped: false, ..extent }).intersection_points, 1);
     }
 
     #[test]
