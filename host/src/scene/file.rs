@@ -219,10 +219,25 @@ fn refusal(source: &SourceText, error: &toml::de::Error) -> InputError {
             format!("write one of {}", known.join(", ")),
         ),
         _ if message.starts_with("missing field") => (message.clone(), "in here", "add the field".to_owned()),
-        _ if message.starts_with("invalid") => (message.clone(), "not as expected", "correct this value".to_owned()),
+        _ if message.starts_with("invalid") => (in_words(&message), "not as expected", "correct this value".to_owned()),
         _ => (message.clone(), "here", "the file is TOML: `name = value` and `[table]`; strings in quotes".to_owned()),
     };
     source.refuse(error.span().unwrap_or(0..0), message, label, help)
+}
+
+/// A reader's refusal of a value, without names of this program's types: "invalid type: string "big", expected u32".
+fn in_words(message: &str) -> String {
+    let Some((found, expected)) = message.rsplit_once(", expected ") else {
+        return message.to_owned();
+    };
+    let expected = match expected {
+        "u32" | "u64" => "a whole number, 0 or more",
+        "f64" => "a number",
+        "a sequence" => "a list in brackets",
+        _ if expected.starts_with("struct ") => "a table, such as `{ name = value }`",
+        _ => expected,
+    };
+    format!("{found}, expected {expected}")
 }
 
 #[cfg(test)]

@@ -68,9 +68,15 @@ fn unknown_names_with_the_nearest() {
 
 #[test]
 fn wrong_types() {
-    refused_after("fov = \"wide\"\n", "s.toml:5:7", "invalid type: string \"wide\", expected f64");
-    refused_after("[image]\nsize = [-1, 5]\n", "s.toml:6:9", "invalid value: integer `-1`, expected u32");
-    refused_after("[trace.limits]\nvoxels = 1.5\n", "s.toml:6:10", "invalid type: floating point `1.5`, expected u64");
+    refused_after("fov = \"wide\"\n", "s.toml:5:7", "invalid type: string \"wide\", expected a number");
+    refused_after("[image]\nsize = \"big\"\n", "s.toml:6:8", "expected a list in brackets");
+    refused_after("[materials]\nred = 5\n", "s.toml:6:7", "expected a table, such as");
+    refused_after("[image]\nsize = [-1, 5]\n", "s.toml:6:9", "invalid value: integer `-1`, expected a whole number");
+    refused_after(
+        "[trace.limits]\nvoxels = 1.5\n",
+        "s.toml:6:10",
+        "invalid type: floating point `1.5`, expected a whole number",
+    );
 }
 
 #[test]
@@ -118,7 +124,7 @@ fn values_out_of_range() {
     for (line, place, message) in [
         ("map_size = 0", "s.toml:7:12", "`map_size` is 0"),
         ("map_size = 8193", "s.toml:7:12", "`map_size` is 8193"),
-        ("map_size = 0.5", "s.toml:7:12", "invalid type: floating point `0.5`, expected u32"),
+        ("map_size = 0.5", "s.toml:7:12", "invalid type: floating point `0.5`, expected a whole number"),
         ("map_bias = -1", "s.toml:7:12", "`map_bias` is -1"),
         ("map_bias = inf", "s.toml:7:12", "`map_bias` is inf"),
         ("map_sice = 8", "s.toml:7:1", "there is no `map_sice` here (did you mean `map_size`?)"),
