@@ -87,6 +87,12 @@ impl<'m, S: Scalar> Patches<'m, S> {
         self.patches
     }
 
+    /// How many surfaces they are of.
+    #[inline]
+    pub fn surfaces(&self) -> usize {
+        self.first.len().saturating_sub(1)
+    }
+
     /// The number, among all, of a surface's first patch, and of the one after its last; `None` if there is no such surface.
     #[inline]
     pub fn range(&self, surface: usize) -> Option<(usize, usize)> {

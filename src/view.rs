@@ -96,6 +96,8 @@ pub enum ViewError {
     /// The eye's largest |coordinate| is more than eight units of the frame, eight to sixteen times that of the scene: near to parallel, its rays
     /// would lose digits. They can be traced one by one.
     Far,
+    /// The patches are of more or fewer surfaces than the scene has: they are another scene's.
+    Patches,
     /// More patches than 32 bits can count.
     TooLarge,
 }
@@ -107,6 +109,7 @@ impl core::fmt::Display for ViewError {
             ViewError::Ray(error) => write!(f, "the ray of the middle: {error}"),
             ViewError::Flat => f.write_str("the camera's vectors lie in a plane"),
             ViewError::Far => f.write_str("the eye is farther away than eight times the scene's size"),
+            ViewError::Patches => f.write_str("the patches are of another scene"),
             ViewError::TooLarge => f.write_str("more patches than 32 bits can count"),
         }
     }
@@ -176,7 +179,7 @@ impl<'m, P: Point> View<'m, P> {
         camera: &Camera<P::Scalar>,
         memory: ViewMemory<'m, P>,
     ) -> Result<Self, ViewError> {
-        let lens = Lens::of(scene.frame(), camera)?;
+        let lens = Lens::checked(scene, patches, camera)?;
         let (infinity, least) = (P::Scalar::INFINITY, P::Scalar::LEAST);
         let along =
             scene.nets().flat_map(|net| net.points().iter()).map(|point| point.turned(&lens.turn).position()[2]);
@@ -202,7 +205,7 @@ impl<'m, P: Point> View<'m, P> {
         if let Some(patches) = patches {
             for surface in 0..scene.len() {
                 first_runs.push(u32::try_from(runs.len()).map_err(|_| ViewError::TooLarge)?);
-                for run in patches.of_surface(surface).unwrap_or(&[]).chunks(RUN) {
+                for run in patches.of_surface(surface).ok_or(ViewError::Patches)?.chunks(RUN) {
                     let mut rows = [infinity, least];
                     for patch in run {
                         let bounds = patch.bounds().turned(&lens.turn);
@@ -262,8 +265,12 @@ impl<'m, P: Point> View<'m, P> {
 
     /// Whether there can be a view of a scene from a camera, but for memory and numbers of patches.
     #[cfg(all(feature = "capi", not(test)))]
-    pub(crate) fn check(scene: &Scene<'m, P>, camera: &Camera<P::Scalar>) -> Result<(), ViewError> {
-        Lens::of(scene.frame(), camera).map(|_| ())
+    pub(crate) fn check(
+        scene: &Scene<'m, P>,
+        patches: Option<&Patches<'m, P::Scalar>>,
+        camera: &Camera<P::Scalar>,
+    ) -> Result<(), ViewError> {
+        Lens::checked(scene, patches, camera).map(|_| ())
     }
 
     /// How many slots of each kind it takes, in the order of [`ViewMemory`].
@@ -299,15 +306,15 @@ impl<'m, P: Point> View<'m, P> {
         self.scene.surface(number)
     }
 
-    /// The ray of the image's point (x, y) in `interval`, as far as that lies ahead of the eye. Refuses NaN, and directions
-    /// more than 45° off `forward`, in either of the directions across it.
+    /// The ray of the image's point (x, y) in `interval`, as far as that lies ahead of the eye. Refuses NaN, infinity, and
+    /// directions more than 45° off `forward`, in either of the directions across it.
     #[inline(always)]
     pub fn ray(&self, [x, y]: [P::Scalar; 2], interval: &Interval<P::Scalar>) -> Result<ViewRay<P::Scalar>, RayError> {
         let ViewHeader { directions: [forward, right, up], unscale, farthest, .. } = &self.header;
         let direction: [P::Scalar; 3] = core::array::from_fn(|k| forward[k] + x * right[k] + y * up[k]);
         let [across, upward, speed] = direction;
         if !(across.abs() <= speed && upward.abs() <= speed) {
-            return Err(RayError::OutOfView);
+            return Err(refused([x, y]));
         }
         // See `Frame::ray`.
         let small = *unscale * P::Scalar::EPSILON;
@@ -340,6 +347,16 @@ impl<'m, P: Point> View<'m, P> {
     }
 }
 
+/// Why a point of the image has no ray.
+#[cold]
+fn refused<S: Scalar>(place: [S; 2]) -> RayError {
+    match place.iter().find(|c| !c.is_finite()) {
+        None => RayError::OutOfView,
+        Some(c) if c.abs() == S::INFINITY => RayError::Infinite,
+        Some(_) => RayError::NotANumber,
+    }
+}
+
 /// How a camera turns the frame, and where in the image it sees points.
 struct Lens<S> {
     header: ViewHeader<S>,
@@ -361,6 +378,18 @@ struct Lens<S> {
 const LEAST_VOLUME: u32 = 1 << 10;
 
 impl<S: Scalar> Lens<S> {
+    /// Of a scene and its patches, if they are its own.
+    fn checked<P: Point<Scalar = S>>(
+        scene: &Scene<'_, P>,
+        patches: Option<&Patches<'_, S>>,
+        camera: &Camera<S>,
+    ) -> Result<Self, ViewError> {
+        if patches.is_some_and(|patches| patches.surfaces() != scene.len()) {
+            return Err(ViewError::Patches);
+        }
+        Lens::of(scene.frame(), camera)
+    }
+
     fn of(frame: &Frame<S>, camera: &Camera<S>) -> Result<Self, ViewError> {
         let Camera { eye, forward, right, up } = *camera;
         // The middle's ray stands for all others: theirs differ by a small factor.

@@ -229,7 +229,7 @@ functions! {
     /// scratch: NEWTON words. limits and work may be NULL. After PATCHRAY_GAVE_UP_... hit is the closest one so far, which is
     /// no answer.
     newton_closest: patchray_newton_closest_f32,
-    /// A hit by newton, the first that is found, not the closest: for shadows.
+    /// A hit by newton, the first that is found, not the closest: for shadows. A miss is not proved, as of newton_closest.
     newton_any: patchray_newton_any_f32,
     /// The closest hit by the improved numerical method, with scan-line coherence: rays of one scan line follow one another
     /// closely, and each begins where the last one ended. memory has a slot per surface and is left alone between rays; zeros at

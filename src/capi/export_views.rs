@@ -76,7 +76,9 @@ macro_rules! functions_of_views {
 functions_of_views! {
     f32, Plain<f32>,
     /// Turns a scene, and its patches if they are not NULL, to a camera, for tracing scan lines of its image. Without
-    /// patches only clipping can trace it. Counts as for scene_build; sights, runs and first_runs only with patches.
+    /// patches only clipping can trace it. Counts as for scene_build; sights, runs and first_runs only with patches. The view
+    /// goes on reading the surfaces, offsets and references of the scene and the first of the patches; their points and patches it
+    /// has turned. Codes of rays are of the camera's three vectors.
     view_build: patchray_view_build_f32,
     without memory {
         /// Traces a scan line by clipping: of each ray the hit, in codes what patchray_clipping_closest would return, and in works,

@@ -4,7 +4,7 @@
 //! the references that exist are valid by what can be known of an address, and nothing that one of them writes is seen
 //! through another.
 
-use super::status::{Code, PATCHRAY_COUNT, PATCHRAY_MISALIGNED, PATCHRAY_NULL, PATCHRAY_OVERLAP};
+use super::status::{Code, PATCHRAY_COUNT, PATCHRAY_MEMORY, PATCHRAY_MISALIGNED, PATCHRAY_NULL, PATCHRAY_OVERLAP};
 use heapless::Vec;
 
 /// The most pieces of memory that one call names: a scan line by coherent clipping has 23.
@@ -132,6 +132,23 @@ impl Lending {
         }
         // SAFETY: the caller's; address and size were noted, so that no other memory of this call is among them.
         Ok(unsafe { core::slice::from_raw_parts_mut(first.cast(), count) })
+    }
+
+    /// The same of at least one slot for each of so many surfaces.
+    ///
+    /// # Safety
+    /// As for [`Lending::memory`].
+    #[inline(always)]
+    pub(super) unsafe fn slot_each<'c, A, T>(
+        &mut self,
+        first: *mut A,
+        count: usize,
+        surfaces: usize,
+    ) -> Result<&'c mut [T], Code> {
+        // SAFETY: the caller's.
+        let slots = unsafe { self.memory(first, count) }?;
+        // Now, and not when a ray comes to a surface without one.
+        if slots.len() < surfaces { Err(PATCHRAY_MEMORY) } else { Ok(slots) }
     }
 
     /// Slots that the call fills, once it has seen all that it reads.

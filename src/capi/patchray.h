@@ -22,14 +22,16 @@
 // memory of lines are of one thread at a time. What lent memory holds at first does not matter, but that memory of coherence
 // and of lines is set.
 //
-// Answers. Not negative: PATCHRAY_OK, PATCHRAY_MISS, PATCHRAY_HIT. Negative: why there is none; then nothing was written but
-// what is said where it is. An address that is NULL or misaligned, memory that is too short by its count or overlaps other
-// memory of the same call, a number that is NaN: each has its code. That memory of the stated length is there at an address
-// is believed. Ranges of memory that are only read may overlap.
+// Answers. Not negative: PATCHRAY_OK, PATCHRAY_MISS, PATCHRAY_HIT. Negative: why there is none. Then nothing was written, but
+// where it is said; and a preparation that answers PATCHRAY_MEMORY has set the counts, and may have written to all that it was
+// lent, so that tables which were made there before are lost. An address that is NULL or misaligned, memory that is too short
+// by its count or overlaps other memory of the same call, a number that is NaN: each has its code. That memory of the stated
+// length is there at an address is believed. Ranges of memory that are only read may overlap.
 //
 // A program that calls one method and is linked with --gc-sections holds no code of another.
 //
-// Example. The teapot in 64 x 64 rays, by clipping. teapot.h holds its 32 surfaces: static const float teapot[32][48].
+// Example. The teapot in 64 x 64 rays, by clipping. teapot.h holds its 32 surfaces: static const float teapot[32][48]
+// (tests/capi/teapot.awk makes it of fixtures/patches/teapot.bpt).
 //
 //     #include "patchray.h"
 //     #include "teapot.h"
@@ -147,7 +149,8 @@
 // filled at all.
 #define PATCHRAY_LAYOUT_DIFFERS -5
 
-// Lent memory has too few slots. After a preparation its counts say how many are needed.
+// Lent memory has too few slots. After a preparation its counts say how many are needed; what it was lent is then not as it was
+// before, and no table that was made in it can be used any more.
 #define PATCHRAY_MEMORY -6
 
 // Scratch has too few words for the degrees of the surfaces.
@@ -156,10 +159,10 @@
 // More surfaces, control points, patches or voxels than can be numbered.
 #define PATCHRAY_TOO_LARGE -8
 
-// An option or a limit is NaN, or not one of the values that it may have.
+// An option, a limit, or a number of a line or hit is NaN, or not one of the values that it may have.
 #define PATCHRAY_OPTION -9
 
-// Tables that do not belong together, such as patches of fewer surfaces than the scene has.
+// Tables that do not belong together, such as patches of other surfaces than the scene has.
 #define PATCHRAY_TABLES -10
 
 // A surface's degree is not within 1 to 15.
@@ -249,7 +252,8 @@
 // `patchray_limits.acceptance`: the paper's rule, likely right.
 #define PATCHRAY_ACCEPTANCE_PAPER 0
 
-// `patchray_limits.acceptance`: only what is proved, slower.
+// `patchray_limits.acceptance`: only what is proved, slower. newton_closest, newton_any and newton_line take either for the
+// same: they prove nothing.
 #define PATCHRAY_ACCEPTANCE_PROVED 1
 
 // A surface to build a scene of: of degrees degree_u x degree_v, (degree_u + 1)(degree_v + 1) control points, the index in u
@@ -280,7 +284,7 @@ typedef struct {
   uint32_t scene_voxels;
   // The most voxels of one surface's grid.
   uint32_t grid_voxels;
-  // How often a surface may be halved in each direction, at most 14.
+  // How often a surface may be halved in each direction; more than 14 are as 14.
   uint32_t depth;
   // The most patches that a surface may make.
   uint32_t patches_per_surface;
@@ -425,7 +429,7 @@ typedef struct {
   size_t links_len;
 } patchray_tree_f32;
 
-// A ray `origin + t   direction`, of which t_min to t_max counts. The direction need not be of unit length.
+// A ray `origin + t direction`, of which t_min to t_max counts. The direction need not be of unit length.
 typedef struct {
   // Where t = 0.
   float origin[3];
@@ -440,15 +444,15 @@ typedef struct {
 // Bounds on the work of one call. Functions take NULL for the defaults; one that sets some begins with
 // patchray_limits_default_f32 or _f64, since a budget of 0 allows nothing.
 typedef struct {
-  // How far from the ray a root may lie, relative to a scene of size 1.
+  // How far from the ray a root may lie, relative to a scene of size 1; not below 0.
   float tolerance;
   // The factor in the paper's eq. (1). Smaller flags more rays as critical, which costs time and loses fewer double roots.
   float critical_factor;
   // The share of an interval that a clip has to remove, else it is bisected.
   float clip_threshold;
-  // Evaluations that one Newton start may take.
+  // Evaluations that one Newton start may take, at least 1.
   uint32_t newton_iterations;
-  // Starts per patch, at most 3.
+  // Starts per patch, 1 to 3.
   uint32_t newton_starts;
   // How often one Newton step may be halved.
   uint32_t newton_halvings;
@@ -470,7 +474,7 @@ typedef struct {
   uint32_t clip_steps;
   // Budget: bisections.
   uint32_t bisections;
-  // Budget: domains of one surface that wait to be clipped, at most 64.
+  // Budget: domains of one surface that wait to be clipped. There is room for 64, and more are as 64.
   uint32_t pending_domains;
 } patchray_limits_f32;
 
@@ -591,7 +595,7 @@ typedef struct {
   uint32_t scene_voxels;
   // The most voxels of one surface's grid.
   uint32_t grid_voxels;
-  // How often a surface may be halved in each direction, at most 14.
+  // How often a surface may be halved in each direction; more than 14 are as 14.
   uint32_t depth;
   // The most patches that a surface may make.
   uint32_t patches_per_surface;
@@ -736,7 +740,7 @@ typedef struct {
   size_t links_len;
 } patchray_tree_f64;
 
-// A ray `origin + t   direction`, of which t_min to t_max counts. The direction need not be of unit length.
+// A ray `origin + t direction`, of which t_min to t_max counts. The direction need not be of unit length.
 typedef struct {
   // Where t = 0.
   double origin[3];
@@ -751,15 +755,15 @@ typedef struct {
 // Bounds on the work of one call. Functions take NULL for the defaults; one that sets some begins with
 // patchray_limits_default_f32 or _f64, since a budget of 0 allows nothing.
 typedef struct {
-  // How far from the ray a root may lie, relative to a scene of size 1.
+  // How far from the ray a root may lie, relative to a scene of size 1; not below 0.
   double tolerance;
   // The factor in the paper's eq. (1). Smaller flags more rays as critical, which costs time and loses fewer double roots.
   double critical_factor;
   // The share of an interval that a clip has to remove, else it is bisected.
   double clip_threshold;
-  // Evaluations that one Newton start may take.
+  // Evaluations that one Newton start may take, at least 1.
   uint32_t newton_iterations;
-  // Starts per patch, at most 3.
+  // Starts per patch, 1 to 3.
   uint32_t newton_starts;
   // How often one Newton step may be halved.
   uint32_t newton_halvings;
@@ -781,7 +785,7 @@ typedef struct {
   uint32_t clip_steps;
   // Budget: bisections.
   uint32_t bisections;
-  // Budget: domains of one surface that wait to be clipped, at most 64.
+  // Budget: domains of one surface that wait to be clipped. There is room for 64, and more are as 64.
   uint32_t pending_domains;
 } patchray_limits_f64;
 
@@ -943,7 +947,7 @@ typedef struct {
 typedef struct {
   // x and y of each ray's point of the image: best from one end of the line to the other.
   const float *places;
-  // How many numbers: two for each ray.
+  // How many numbers: two for each ray, so an even count.
   size_t places_len;
   // The least and the largest x of them all.
   float x[2];
@@ -1077,7 +1081,7 @@ typedef struct {
 typedef struct {
   // x and y of each ray's point of the image: best from one end of the line to the other.
   const double *places;
-  // How many numbers: two for each ray.
+  // How many numbers: two for each ray, so an even count.
   size_t places_len;
   // The least and the largest x of them all.
   double x[2];
@@ -1215,7 +1219,7 @@ int32_t patchray_newton_closest_f32(const patchray_scene_f32 *scene,
                                     patchray_hit_f32 *hit,
                                     patchray_work *work);
 
-// A hit by newton, the first that is found, not the closest: for shadows.
+// A hit by newton, the first that is found, not the closest: for shadows. A miss is not proved, as of newton_closest.
 int32_t patchray_newton_any_f32(const patchray_scene_f32 *scene,
                                 const patchray_patches_f32 *patches,
                                 const patchray_tree_f32 *tree,
@@ -1574,7 +1578,9 @@ int32_t patchray_options_default_f64(patchray_options_f64 *options);
 int32_t patchray_limits_default_f64(patchray_limits_f64 *limits);
 
 // Turns a scene, and its patches if they are not NULL, to a camera, for tracing scan lines of its image. Without
-// patches only clipping can trace it. Counts as for scene_build; sights, runs and first_runs only with patches.
+// patches only clipping can trace it. Counts as for scene_build; sights, runs and first_runs only with patches. The view
+// goes on reading the surfaces, offsets and references of the scene and the first of the patches; their points and patches it
+// has turned. Codes of rays are of the camera's three vectors.
 int32_t patchray_view_build_f32(const patchray_scene_f32 *scene,
                                 const patchray_patches_f32 *patches,
                                 const patchray_camera_f32 *camera,

@@ -27,15 +27,16 @@ pub const PATCHRAY_COUNT: i32 = -4;
 /// A table was not made by this version of the library, for this precision and this kind of control points, or is not
 /// filled at all.
 pub const PATCHRAY_LAYOUT_DIFFERS: i32 = -5;
-/// Lent memory has too few slots. After a preparation its counts say how many are needed.
+/// Lent memory has too few slots. After a preparation its counts say how many are needed; what it was lent is then not as it was
+/// before, and no table that was made in it can be used any more.
 pub const PATCHRAY_MEMORY: i32 = -6;
 /// Scratch has too few words for the degrees of the surfaces.
 pub const PATCHRAY_SCRATCH: i32 = -7;
 /// More surfaces, control points, patches or voxels than can be numbered.
 pub const PATCHRAY_TOO_LARGE: i32 = -8;
-/// An option or a limit is NaN, or not one of the values that it may have.
+/// An option, a limit, or a number of a line or hit is NaN, or not one of the values that it may have.
 pub const PATCHRAY_OPTION: i32 = -9;
-/// Tables that do not belong together, such as patches of fewer surfaces than the scene has.
+/// Tables that do not belong together, such as patches of other surfaces than the scene has.
 pub const PATCHRAY_TABLES: i32 = -10;
 
 /// A surface's degree is not within 1 to 15.
@@ -124,6 +125,7 @@ pub(super) fn of_view(error: ViewError) -> Code {
         ViewError::Ray(error) => of_ray(error),
         ViewError::Flat => PATCHRAY_CAMERA_FLAT,
         ViewError::Far => PATCHRAY_CAMERA_FAR,
+        ViewError::Patches => PATCHRAY_TABLES,
         ViewError::TooLarge => PATCHRAY_TOO_LARGE,
     }
 }

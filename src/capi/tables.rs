@@ -1,7 +1,7 @@
 //! Tables in lent memory or flash, as the kernel's views of them.
 
 use super::lend::Lending;
-use super::status::{Code, PATCHRAY_LAYOUT_DIFFERS};
+use super::status::{Code, PATCHRAY_LAYOUT_DIFFERS, PATCHRAY_TABLES};
 use super::types::*;
 use crate::frame::Frame;
 use crate::grid::{GridSlot, Grids};
@@ -112,6 +112,21 @@ pub(super) unsafe fn patches_in<'c, S: Scalar>(
     // SAFETY: likewise.
     let first = unsafe { lending.slots(patches.first, patches.first_len) }?;
     Ok((Patches::new(slots, first), patches.first_len.saturating_sub(1)))
+}
+
+/// Patches of so many surfaces.
+///
+/// # Safety
+/// As for [`scene`].
+#[inline(always)]
+pub(super) unsafe fn patches_of<'c, S: Scalar>(
+    lending: &mut Lending,
+    patches: *const patchray_patches<S>,
+    surfaces: usize,
+) -> Result<Patches<'c, S>, Code> {
+    // SAFETY: the caller's.
+    let (patches, of) = unsafe { self::patches(lending, patches) }?;
+    if of == surfaces { Ok(patches) } else { Err(PATCHRAY_TABLES) }
 }
 
 /// A view, and whether it has patches.

@@ -13,6 +13,9 @@ use crate::scalar::Scalar;
 use crate::scene::Scene;
 use heapless::Vec;
 
+/// The most starts that a patch has.
+const MAX_STARTS: u32 = 3;
+
 impl<S: Scalar> patchray_limits<S> {
     pub(super) fn defaults() -> Self {
         let limits = Limits::default();
@@ -40,6 +43,11 @@ impl<S: Scalar> patchray_limits<S> {
     #[inline(always)]
     pub(super) fn checked(&self) -> Result<Limits<S>, Code> {
         if !(self.tolerance.is_finite() && self.critical_factor.is_finite() && self.clip_threshold.is_finite()) {
+            return Err(PATCHRAY_OPTION);
+        }
+        // With these nothing is found, and nothing ran out that would say so.
+        let finds = self.tolerance >= S::ZERO && self.newton_iterations > 0;
+        if !(finds && (1..=MAX_STARTS).contains(&self.newton_starts)) {
             return Err(PATCHRAY_OPTION);
         }
         Ok(Limits {
@@ -147,7 +155,8 @@ type WithTree<S> = (*const patchray_scene<S>, *const patchray_patches<S>, *const
 type WithGrids<S> = (*const patchray_scene<S>, *const patchray_patches<S>, *const patchray_grids<S>);
 type Out<S> = (*mut patchray_hit<S>, *mut patchray_work);
 
-/// A call: makes sure of all memory, that of `tables` last, before any is written; `room` makes its scratch of words.
+/// A call: makes sure of all memory, that of `tables`, which are of so many surfaces, last, before any is written; `room`
+/// makes its scratch of words.
 ///
 /// # Safety
 /// As for [`clipping_closest`].
@@ -158,7 +167,7 @@ unsafe fn with<P: Point, T, R>(
     limits: *const patchray_limits<P::Scalar>,
     (words, words_len): (*mut u64, usize),
     (hit, work): Out<P::Scalar>,
-    tables: impl FnOnce(&mut Lending) -> Result<T, Code>,
+    tables: impl FnOnce(&mut Lending, usize) -> Result<T, Code>,
     room: impl FnOnce(Room<u64>) -> Result<R, Code>,
     search: impl FnOnce(&Asked<'_, P>, T, &mut R, &mut Work) -> Found<P::Scalar>,
 ) -> Result<Code, Code> {
@@ -166,7 +175,7 @@ unsafe fn with<P: Point, T, R>(
     let (hit, words) = (lending.place(hit)?, lending.room(words, words_len)?);
     // SAFETY: the caller's.
     let asked = unsafe { Asked::of(&mut lending, scene, ray, limits, work) }?;
-    let tables = tables(&mut lending)?;
+    let tables = tables(&mut lending, asked.scene.len())?;
     let mut room = room(words)?;
     let mut done = Work::default();
     let found = search(&asked, tables, &mut room, &mut done);
@@ -193,7 +202,7 @@ pub(super) unsafe fn clipping_closest<P: Point>(
             limits,
             scratch,
             out,
-            |_| Ok(()),
+            |_, _| Ok(()),
             |words| scratch::clip::<P>(words),
             |asked, (), room, work| {
                 clipping::closest(&asked.scene, &asked.ray, &asked.interval, &asked.limits, room, work)
@@ -220,7 +229,7 @@ pub(super) unsafe fn clipping_any<P: Point>(
             limits,
             scratch,
             out,
-            |_| Ok(()),
+            |_, _| Ok(()),
             |words| scratch::clip::<P>(words),
             |asked, (), room, work| {
                 clipping::any_hit(&asked.scene, &asked.ray, &asked.interval, &asked.limits, room, work)
@@ -282,10 +291,14 @@ pub(super) unsafe fn clipping_coherent_closest<P: Point>(
 ) -> Result<Code, Code> {
     // SAFETY: the caller's, here and within.
     unsafe {
-        let tables = |lending: &mut Lending| {
-            let (patches, _) = tables::patches(lending, patches)?;
+        let tables = |lending: &mut Lending, surfaces| {
+            let patches = tables::patches_of(lending, patches, surfaces)?;
             let grids = tables::grids(lending, grids)?;
-            let memory = lending.memory(memory, memory_len)?;
+            let memory = lending.slot_each(memory, memory_len, surfaces)?;
+            // Plus one it is what empty slots of memory hold.
+            if scan_line == u32::MAX {
+                return Err(PATCHRAY_OPTION);
+            }
             Ok((patches, grids, memory))
         };
         let room = |words| scratch::clip::<P>(words);
@@ -319,8 +332,8 @@ pub(super) unsafe fn newton_closest<P: Point>(
 ) -> Result<Code, Code> {
     // SAFETY: the caller's, here and within.
     unsafe {
-        let tables = |lending: &mut Lending| {
-            let (patches, _) = tables::patches(lending, patches)?;
+        let tables = |lending: &mut Lending, surfaces| {
+            let patches = tables::patches_of(lending, patches, surfaces)?;
             let tree = tables::tree(lending, tree)?;
             Ok((patches, tree))
         };
@@ -344,8 +357,8 @@ pub(super) unsafe fn newton_any<P: Point>(
 ) -> Result<Code, Code> {
     // SAFETY: the caller's, here and within.
     unsafe {
-        let tables = |lending: &mut Lending| {
-            let (patches, _) = tables::patches(lending, patches)?;
+        let tables = |lending: &mut Lending, surfaces| {
+            let patches = tables::patches_of(lending, patches, surfaces)?;
             let tree = tables::tree(lending, tree)?;
             Ok((patches, tree))
         };
@@ -370,10 +383,14 @@ pub(super) unsafe fn newton_coherent_closest<P: Point>(
 ) -> Result<Code, Code> {
     // SAFETY: the caller's, here and within.
     unsafe {
-        let tables = |lending: &mut Lending| {
-            let (patches, _) = tables::patches(lending, patches)?;
+        let tables = |lending: &mut Lending, surfaces| {
+            let patches = tables::patches_of(lending, patches, surfaces)?;
             let grids = tables::grids(lending, grids)?;
-            let memory = lending.memory(memory, memory_len)?;
+            let memory = lending.slot_each(memory, memory_len, surfaces)?;
+            // Plus one it is what empty slots of memory hold.
+            if scan_line == u32::MAX {
+                return Err(PATCHRAY_OPTION);
+            }
             Ok((patches, grids, memory))
         };
         with::<P, _, _>(

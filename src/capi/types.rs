@@ -27,7 +27,8 @@ pub const PATCHRAY_MAX_DEGREE: u32 = 15;
 
 /// `patchray_limits.acceptance`: the paper's rule, likely right.
 pub const PATCHRAY_ACCEPTANCE_PAPER: u32 = 0;
-/// `patchray_limits.acceptance`: only what is proved, slower.
+/// `patchray_limits.acceptance`: only what is proved, slower. newton_closest, newton_any and newton_line take either for the
+/// same: they prove nothing.
 pub const PATCHRAY_ACCEPTANCE_PROVED: u32 = 1;
 
 /// A surface to build a scene of: of degrees degree_u x degree_v, (degree_u + 1)(degree_v + 1) control points, the index in u
@@ -62,7 +63,7 @@ pub struct patchray_options<S> {
     pub scene_voxels: u32,
     /// The most voxels of one surface's grid.
     pub grid_voxels: u32,
-    /// How often a surface may be halved in each direction, at most 14.
+    /// How often a surface may be halved in each direction; more than 14 are as 14.
     pub depth: u32,
     /// The most patches that a surface may make.
     pub patches_per_surface: u32,
@@ -414,7 +415,7 @@ pub struct patchray_followed<S> {
 pub struct patchray_line<S> {
     /// x and y of each ray's point of the image: best from one end of the line to the other.
     pub places: *const S,
-    /// How many numbers: two for each ray.
+    /// How many numbers: two for each ray, so an even count.
     pub places_len: usize,
     /// The least and the largest x of them all.
     pub x: [S; 2],
@@ -428,7 +429,7 @@ pub struct patchray_line<S> {
     pub number: u32,
 }
 
-/// A ray `origin + t   direction`, of which t_min to t_max counts. The direction need not be of unit length.
+/// A ray `origin + t direction`, of which t_min to t_max counts. The direction need not be of unit length.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct patchray_ray<S> {
@@ -463,15 +464,15 @@ pub struct patchray_hit<S> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct patchray_limits<S> {
-    /// How far from the ray a root may lie, relative to a scene of size 1.
+    /// How far from the ray a root may lie, relative to a scene of size 1; not below 0.
     pub tolerance: S,
     /// The factor in the paper's eq. (1). Smaller flags more rays as critical, which costs time and loses fewer double roots.
     pub critical_factor: S,
     /// The share of an interval that a clip has to remove, else it is bisected.
     pub clip_threshold: S,
-    /// Evaluations that one Newton start may take.
+    /// Evaluations that one Newton start may take, at least 1.
     pub newton_iterations: u32,
-    /// Starts per patch, at most 3.
+    /// Starts per patch, 1 to 3.
     pub newton_starts: u32,
     /// How often one Newton step may be halved.
     pub newton_halvings: u32,
@@ -493,7 +494,7 @@ pub struct patchray_limits<S> {
     pub clip_steps: u32,
     /// Budget: bisections.
     pub bisections: u32,
-    /// Budget: domains of one surface that wait to be clipped, at most 64.
+    /// Budget: domains of one surface that wait to be clipped. There is room for 64, and more are as 64.
     pub pending_domains: u32,
 }
 

@@ -55,7 +55,7 @@ pub(super) unsafe fn view_build<P: Point>(
     };
     let camera = Camera { eye, forward, right, up };
     // Before anything is written.
-    View::check(&scene, &camera).map_err(of_view)?;
+    View::check(&scene, patches.as_ref(), &camera).map_err(of_view)?;
     // SAFETY: the caller's.
     let room = unsafe {
         ViewMemory {
@@ -121,7 +121,7 @@ pub(super) struct OfLine<S> {
     pub(super) works: *mut patchray_work,
 }
 
-/// Traces a scan line: `memory` makes sure of the method's coherence memory, `room` makes its scratch of words, and `trace`
+/// Traces a scan line: `memory` makes sure of the method's coherence memory, of so many surfaces, `room` makes its scratch of words, and `trace`
 /// answers a ray. The line is of patches in `order`; or of surfaces, where the view has no patches and the method needs none.
 ///
 /// # Safety
@@ -130,7 +130,7 @@ pub(super) struct OfLine<S> {
 pub(super) unsafe fn line<P: Point, M, R>(
     given: OfLine<P::Scalar>,
     (order, needs_patches): (Order, bool),
-    memory: impl FnOnce(&mut Lending) -> Result<M, Code>,
+    memory: impl FnOnce(&mut Lending, usize) -> Result<M, Code>,
     room: impl FnOnce(Room<u64>) -> Result<R, Code>,
     mut trace: impl FnMut(
         &View<'_, P>,
@@ -159,7 +159,7 @@ pub(super) unsafe fn line<P: Point, M, R>(
     let limits = limits.map_or(Ok(Limits::default()), |limits| limits.checked())?;
     // SAFETY: the caller's.
     let (view, has_patches) = unsafe { tables::view::<P>(&mut lending, given.view) }?;
-    let mut memory = memory(&mut lending)?;
+    let mut memory = memory(&mut lending, view.surfaces().len())?;
     // Set once by the caller: to clear it for each line would cost more than many a line's rays.
     // SAFETY: the caller's.
     let lent_slots = unsafe {
@@ -174,7 +174,9 @@ pub(super) unsafe fn line<P: Point, M, R>(
     }
     let interval = Interval::new(asked.t_min, asked.t_max).ok_or(PATCHRAY_RAY_INTERVAL)?;
     let window = Window { x: asked.x, y: asked.y };
-    if !(window.x[0] <= window.x[1] && window.y[0] <= window.y[1]) {
+    let has_extent = window.x[0] <= window.x[1] && window.y[0] <= window.y[1];
+    // The last number is that of no line: plus one it is what empty slots of memory hold.
+    if !(has_extent && asked.places_len.is_multiple_of(2) && asked.number < u32::MAX) {
         return Err(PATCHRAY_OPTION);
     }
     let built = if has_patches {
@@ -220,7 +222,7 @@ pub(super) unsafe fn clipping_line<P: Point>(given: OfLine<P::Scalar>) -> Result
         line::<P, _, _>(
             given,
             (Order::Surfaces, false),
-            |_| Ok(()),
+            |_, _| Ok(()),
             |words| scratch::clip::<P>(words),
             |view, line, _, ray, limits, room, work| clipping::closest_in_view(view, line, ray, limits, room, work),
         )
@@ -239,7 +241,7 @@ pub(super) unsafe fn clipping_coherent_line<P: Point>(
         line::<P, &mut [Remembered<P::Scalar>], _>(
             given,
             (Order::Surfaces, true),
-            |lending| lending.memory(slots, count),
+            |lending, surfaces| lending.slot_each(slots, count, surfaces),
             |words| scratch::clip::<P>(words),
             |view, line, (memory, number), ray, limits, room, work| {
                 clipping_coherent::closest_in_view(view, line, memory, number, ray, limits, room, work)
@@ -260,7 +262,7 @@ pub(super) unsafe fn clipping_predicted_line<P: Point>(
         line::<P, Following<'_, P::Scalar>, _>(
             given,
             (Order::Depth, true),
-            |lending| Ok(Following { slots: lending.memory(slots, count)?, last: u32::MAX }),
+            |lending, surfaces| Ok(Following { slots: lending.slot_each(slots, count, surfaces)?, last: u32::MAX }),
             |words| scratch::clip::<P>(words),
             |view, line, (memory, number), ray, limits, room, work| {
                 clipping_predicted::closest_in_view(view, line, memory, number, ray, limits, room, work)
@@ -278,7 +280,7 @@ pub(super) unsafe fn newton_line<P: Point>(given: OfLine<P::Scalar>) -> Result<C
         line::<P, _, _>(
             given,
             (Order::Surfaces, true),
-            |_| Ok(()),
+            |_, _| Ok(()),
             |words| scratch::newton::<P>(words),
             |view, line, _, ray, limits, scratch, work| newton::closest_in_view(view, line, ray, limits, scratch, work),
         )
@@ -297,7 +299,7 @@ pub(super) unsafe fn newton_coherent_line<P: Point>(
         line::<P, &mut [Remembered<P::Scalar>], _>(
             given,
             (Order::Surfaces, true),
-            |lending| lending.memory(slots, count),
+            |lending, surfaces| lending.slot_each(slots, count, surfaces),
             |words| scratch::newton::<P>(words),
             |view, line, (memory, number), ray, limits, scratch, work| {
                 newton_coherent::closest_in_view(view, line, memory, number, ray, limits, scratch, work)
@@ -318,7 +320,7 @@ pub(super) unsafe fn newton_predicted_line<P: Point>(
         line::<P, Following<'_, P::Scalar>, _>(
             given,
             (Order::Depth, true),
-            |lending| Ok(Following { slots: lending.memory(slots, count)?, last: u32::MAX }),
+            |lending, surfaces| Ok(Following { slots: lending.slot_each(slots, count, surfaces)?, last: u32::MAX }),
             |words| scratch::newton::<P>(words),
             |view, line, (memory, number), ray, limits, scratch, work| {
                 newton_predicted::closest_in_view(view, line, memory, number, ray, limits, scratch, work)

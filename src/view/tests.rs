@@ -115,6 +115,11 @@ fn all_needs_are_told_at_once_and_lending_them_is_enough() {
         let patch =
             crate::measure::Measure::of(&Net::new(1, 1, &points).unwrap(), 0.0).patch(crate::domain::Domain::WHOLE);
         let (all, first) = ([patch; 17], [0, 17]);
+        // Of surfaces without patches a view would see nothing, and say so as a miss.
+        for others in [&[0, 17, 17][..], &[0], &[]] {
+            let built = View::build(scene, Some(&Patches::new(&all, others)), &camera(1.0), nothing());
+            assert_eq!(built.err(), Some(ViewError::Patches), "{others:?}");
+        }
         let patches = Patches::new(&all, &first);
         match View::build(scene, Some(&patches), &camera(1.0), nothing()) {
             Err(ViewError::Memory(needs)) => {
@@ -139,8 +144,13 @@ fn cameras_and_rays_that_cannot_be_traced_are_refused_by_name() {
         assert_eq!(refused(&Camera { eye: [0.0, 0.0, 30.0], ..good }), Some(ViewError::Far));
         let mut room = Room::new();
         let view = View::build(scene, None, &good, room.lend()).unwrap();
-        for place in [[f64::NAN, 0.0], [0.0, f64::INFINITY], [1e9, 0.0], [0.0, -8.0]] {
-            assert_eq!(view.ray(place, &Interval::ahead()).err(), Some(RayError::OutOfView), "{place:?}");
+        for (place, error) in [
+            ([f64::NAN, 0.0], RayError::NotANumber),
+            ([0.0, f64::INFINITY], RayError::Infinite),
+            ([1e9, 0.0], RayError::OutOfView),
+            ([0.0, -8.0], RayError::OutOfView),
+        ] {
+            assert_eq!(view.ray(place, &Interval::ahead()).err(), Some(error), "{place:?}");
         }
         assert!(view.ray([0.9, 0.9], &Interval::ahead()).is_ok());
     });

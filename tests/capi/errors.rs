@@ -147,6 +147,8 @@ fn wrong_addresses_are_refused() {
                 m(&mut p, PATCHRAY_NULL, "no coherence memory", |a| a.memory = null_mut());
                 m(&mut p, PATCHRAY_MISALIGNED, "misaligned memory", |a| a.memory = off_mut(a.memory));
                 m(&mut p, PATCHRAY_OVERLAP, "memory over the scratch", |a| a.memory = a.scratch.cast());
+                m(&mut p, PATCHRAY_MEMORY, "a slot less than surfaces", |a| a.memory_len -= 1);
+                m(&mut p, PATCHRAY_OPTION, "the number of no line", |a| a.line = u32::MAX);
                 // SAFETY: the grids are there.
                 let spoil = |a: &mut Arguments<_>| a.memory = unsafe { (*a.grids).references }.cast_mut().cast();
                 m(&mut p, PATCHRAY_OVERLAP, "memory over the references", spoil);
@@ -186,6 +188,8 @@ fn wrong_tables_are_refused() {
             if method.patches {
                 spoilt(PATCHRAY_LAYOUT_DIFFERS, "patches made otherwise", &|p| p.patches.layout += 1 << 8);
                 spoilt(PATCHRAY_NULL, "no patches", &|p| p.patches.patches = null());
+                spoilt(PATCHRAY_TABLES, "patches of no surface", &|p| p.patches.first_len = 1);
+                spoilt(PATCHRAY_TABLES, "patches of a surface less", &|p| p.patches.first_len -= 1);
                 spoilt(PATCHRAY_MISALIGNED, "misaligned first", &|p| p.patches.first = off(p.patches.first));
             }
             if method.tree {
@@ -210,16 +214,12 @@ fn wrong_tables_are_refused() {
             short(PATCHRAY_TABLES, "too few voxels", &|p| p.scene.offsets_len = 1);
             if method.patches {
                 short(PATCHRAY_TABLES, "too few patches", &|p| p.patches.patches_len = 0);
-                short(PATCHRAY_TABLES, "patches of no surface", &|p| p.patches.first_len = 1);
             }
             if method.tree {
                 short(PATCHRAY_TABLES, "a tree without nodes", &|p| p.tree.nodes_len = 0);
             }
             if method.grids {
                 short(PATCHRAY_TABLES, "no grid", &|p| p.grids.grids_len = 0);
-                let a = Arguments { memory_len: 0, ..p.arguments() };
-                // SAFETY: a right call, but for the number of slots.
-                assert_eq!(unsafe { (method.call)(&a) }, PATCHRAY_MEMORY);
             }
         }
     }
@@ -255,6 +255,11 @@ fn wrong_rays_and_limits_are_refused() {
             spoilt(PATCHRAY_OPTION, "a critical factor of NaN", &|p| p.limits.critical_factor = nan);
             spoilt(PATCHRAY_OPTION, "an infinite threshold", &|p| p.limits.clip_threshold = infinity);
             spoilt(PATCHRAY_OPTION, "an acceptance of its own", &|p| p.limits.acceptance = 2);
+            // Nothing would be found, which once was said to be a miss.
+            spoilt(PATCHRAY_OPTION, "a negative tolerance", &|p| p.limits.tolerance = -one);
+            spoilt(PATCHRAY_OPTION, "no iteration", &|p| p.limits.newton_iterations = 0);
+            spoilt(PATCHRAY_OPTION, "no start", &|p| p.limits.newton_starts = 0);
+            spoilt(PATCHRAY_OPTION, "more starts than there are", &|p| p.limits.newton_starts = 4);
             // Budgets that run out: neither a hit nor a miss, and counted.
             let mut out = |code, spoil: &dyn Fn(&mut patchray_limits<P::Scalar>)| {
                 spoil(&mut p.limits);

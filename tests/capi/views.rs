@@ -308,7 +308,7 @@ fn lines_refuse_what_is_wrong() {
             refused(PATCHRAY_OK, "nothing wrong", &|_, _| {});
             refused(PATCHRAY_OK, "no room for work", &|_, a| a.works = null_mut());
             refused(PATCHRAY_OK, "no rays", &|s, a| {
-                (s.line.places_len, s.line.places) = (1, null());
+                (s.line.places_len, s.line.places) = (0, null());
                 (a.hits, a.codes) = (null_mut(), null_mut());
             });
             refused(PATCHRAY_NULL, "no view", &|_, a| a.view = null());
@@ -354,6 +354,8 @@ fn lines_refuse_what_is_wrong() {
             refused(PATCHRAY_SCRATCH, "few words", &|_, a| a.words = few / 2);
             refused(PATCHRAY_RAY_INTERVAL, "t_min of NaN", &|s, _| s.line.t_min = nan);
             refused(PATCHRAY_OPTION, "an x of NaN", &|s, _| s.line.x[0] = nan);
+            refused(PATCHRAY_OPTION, "an x without y", &|s, _| s.line.places_len -= 1);
+            refused(PATCHRAY_OPTION, "the number of no line", &|s, _| s.line.number = u32::MAX);
             refused(PATCHRAY_OPTION, "rows upside down", &|s, _| {
                 s.line.y = [P::Scalar::ONE, -P::Scalar::ONE];
             });
@@ -361,6 +363,7 @@ fn lines_refuse_what_is_wrong() {
                 refused(PATCHRAY_NULL, "no coherence memory", &|_, a| a.memory = null_mut());
                 refused(PATCHRAY_MISALIGNED, "misaligned memory", &|_, a| a.memory = off_mut(a.memory));
                 refused(PATCHRAY_OVERLAP, "memory over the scratch", &|_, a| a.memory = a.scratch);
+                refused(PATCHRAY_MEMORY, "a slot less than surfaces", &|_, a| a.memory_len -= 1);
             }
             // What is wrong with a ray is its own.
             let mut of_rays = |code: i32, spoil: &dyn Fn(&mut Seen<P::Scalar>)| {
@@ -373,7 +376,8 @@ fn lines_refuse_what_is_wrong() {
                 (seen.view, seen.line, seen.line_memory) = (view, line, line_memory);
             };
             of_rays(PATCHRAY_RAY_OUT_OF_VIEW, &|s| s.places[10] = P::Scalar::from_f64(1e3));
-            of_rays(PATCHRAY_RAY_OUT_OF_VIEW, &|s| s.places[11] = nan);
+            of_rays(PATCHRAY_RAY_NAN, &|s| s.places[11] = nan);
+            of_rays(PATCHRAY_RAY_INFINITE, &|s| s.places[10] = -P::Scalar::INFINITY);
             of_rays(PATCHRAY_RAY_OUT_OF_LINE, &|s| s.line.x[0] = P::Scalar::ZERO);
             // Patches are what all but clipping look for.
             let arguments = bare.row(12);
@@ -439,6 +443,9 @@ fn views_refuse_wrong_memory_and_cameras() {
         assert_eq!(build(&mut memory, null(), patches, &right), PATCHRAY_NULL);
         assert_eq!(build(&mut memory, scene, off(patches), &right), PATCHRAY_MISALIGNED);
         assert_eq!(build(&mut memory, scene, patches, null()), PATCHRAY_NULL);
+        // Surfaces without patches would be seen by no ray.
+        let fewer = patchray_patches { first_len: prepared.patches.first_len - 1, ..prepared.patches };
+        assert_eq!(name(build(&mut memory, scene, &raw const fewer, &right)), "PATCHRAY_TABLES");
         // Without patches none are asked for.
         let mut bare = no_memory();
         assert_eq!(build(&mut bare, scene, null(), &right), PATCHRAY_MEMORY);

@@ -23,7 +23,8 @@ impl Baked {
     /// # Errors
     /// Whatever `out` returns.
     pub fn write_c(&self, of: &str, name: &str, out: &mut impl Write) -> io::Result<()> {
-        let guard = format!("{}_H", name.to_uppercase());
+        // Not that of the library's own header, whatever the name.
+        let guard = format!("PATCHRAY_TABLES_{}_H", name.to_uppercase());
         let suffix = self.suffix();
         writeln!(
             out,

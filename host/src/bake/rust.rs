@@ -42,7 +42,7 @@ impl Baked {
         )?;
         writeln!(
             out,
-            "\n/// The number of surfaces: slots of coherence memory.\npub const COUNT: usize = {};",
+            "\n/// The number of surfaces: slots of coherence memory, if the method has any.\n#[allow(dead_code)]\npub const COUNT: usize = {};",
             self.surfaces
         )?;
         self.write_functions(out)?;

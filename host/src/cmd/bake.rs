@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 
 use super::load::{self, Loaded};
 use super::outputs::Outputs;
@@ -14,14 +14,15 @@ use crate::settings::Flags;
 
 /// The command line of `bake`.
 #[derive(Args, Clone, Debug)]
+#[command(group = ArgGroup::new("tables").required(true).multiple(true))]
 pub struct BakeArgs {
     /// A file of surfaces (.bpt, or NURBS-Python's .json), or a scene file (.toml)
     pub file: PathBuf,
     /// Write the tables as a Rust module; `-` is standard output
-    #[arg(long, value_name = "FILE", required_unless_present = "c", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", group = "tables", help_heading = "Output")]
     pub rust: Option<PathBuf>,
     /// Write the tables as a header in C, whose names begin with the file's; `-` is standard output
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", group = "tables", help_heading = "Output")]
     pub c: Option<PathBuf>,
     /// The common flags.
     #[command(flatten)]
@@ -69,5 +70,29 @@ fn name(file: &Path) -> String {
 fn identifier(path: &Path) -> String {
     let stem = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy());
     let name: String = stem.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    if name.starts_with(|first: char| first.is_ascii_alphabetic()) { name } else { format!("scene_{name}") }
+    let is_free =
+        name.starts_with(|first: char| first.is_ascii_alphabetic()) && !RESERVED.split(' ').any(|word| word == name);
+    if is_free { name } else { format!("scene_{name}") }
+}
+
+/// What neither C11 nor C++17 takes as a name of one's own.
+const RESERVED: &str = "\
+    alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t class compl const \
+    const_cast constexpr continue decltype default delete do double dynamic_cast else enum explicit export extern \
+    false float for friend goto if inline int long main mutable namespace new noexcept not not_eq nullptr operator or \
+    or_eq private protected public register reinterpret_cast restrict return short signed sizeof static static_assert \
+    static_cast struct switch template this thread_local throw true try typedef typeid typename union unsigned using \
+    virtual void volatile wchar_t while xor xor_eq";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `int.h` once began with `static const patchray_scene_f64 int`.
+    #[test]
+    fn names_in_c_are_names() {
+        let named = |path: &str| identifier(Path::new(path));
+        assert_eq!(["teapot.h", "out/my teapot.h", "2nd.h"].map(named), ["teapot", "my_teapot", "scene_2nd"]);
+        assert_eq!(["int.h", "class.h", "main.h"].map(named), ["scene_int", "scene_class", "scene_main"]);
+    }
 }

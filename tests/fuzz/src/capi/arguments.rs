@@ -57,14 +57,14 @@ pub(super) fn method<P: InC>(function: usize) -> Option<Method<P::Scalar>> {
     function.checked_sub(METHODS).and_then(|number| P::METHODS.into_iter().nth(number))
 }
 
-/// Limits as C has them.
+/// Limits as C has them, which takes none with which nothing is found.
 pub(super) fn limits_in_c<S: Scalar>(limits: &Limits<S>) -> patchray_limits<S> {
     patchray_limits {
-        tolerance: limits.tolerance,
+        tolerance: limits.tolerance.abs(),
         critical_factor: limits.critical_factor,
         clip_threshold: limits.clip_threshold,
-        newton_iterations: limits.newton_iterations,
-        newton_starts: limits.newton_starts,
+        newton_iterations: limits.newton_iterations.max(1),
+        newton_starts: limits.newton_starts.clamp(1, 3),
         newton_halvings: limits.newton_halvings,
         acceptance: match limits.acceptance {
             Acceptance::Paper => PATCHRAY_ACCEPTANCE_PAPER,
@@ -140,7 +140,7 @@ impl<P: InC + Kind + Slot> Prepared<P> {
                 scratch_words,
                 memory: field.take(surfaces)?,
                 memory_len: surfaces,
-                scan_line: bytes.count(),
+                scan_line: bytes.count().min(u32::MAX - 1),
                 ray: field.put(patchray_ray { origin, direction, t_min, t_max })?,
                 limits: field.put(limits)?,
                 hit: field.put(core::mem::zeroed())?,

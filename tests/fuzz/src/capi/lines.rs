@@ -89,7 +89,7 @@ impl<P: Views + Kind + Slot> Lines<P> {
                 y: [y; 2],
                 t_min: (*prepared.ray).t_min,
                 t_max: (*prepared.ray).t_max,
-                number: bytes.count(),
+                number: bytes.count().min(u32::MAX - 1),
             };
             Lines {
                 camera_in_rust,
@@ -337,7 +337,7 @@ impl<P: Views + Kind + Slot> Lines<P> {
                 ViewError::Flat => code == PATCHRAY_CAMERA_FLAT,
                 ViewError::Far => code == PATCHRAY_CAMERA_FAR,
                 ViewError::Ray(_) => (PATCHRAY_RAY_RANGE..=PATCHRAY_RAY_NAN).contains(&code),
-                ViewError::TooLarge | ViewError::Memory(_) => false,
+                ViewError::Patches | ViewError::TooLarge | ViewError::Memory(_) => false,
             };
             assert!(fits, "{error}, and in C {code}");
             return;
@@ -379,7 +379,7 @@ impl<P: Views + Kind + Slot> Lines<P> {
                 (place, *self.hits.add(k), *self.codes.add(k), *self.works.add(k))
             };
             let Ok(ray) = view.ray(place, &interval) else {
-                assert!((PATCHRAY_RAY_OUT_OF_VIEW..=PATCHRAY_RAY_RANGE).contains(&code), "{code}");
+                assert!((PATCHRAY_RAY_OUT_OF_VIEW..=PATCHRAY_RAY_NAN).contains(&code), "{code}");
                 continue;
             };
             // A ray that met a surface of more than its scratch: from there on the line's memory is another.
