@@ -19,7 +19,8 @@ pub const ORDER: usize = 4;
 /// The most control points of a surface: the `POINTS` of scratch.
 pub const NET: usize = 16;
 
-/// The number of surfaces: slots of coherence memory.
+/// The number of surfaces: slots of coherence memory, if the method has any.
+#[allow(dead_code)]
 pub const COUNT: usize = 1;
 
 /// The scene.
