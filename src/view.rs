@@ -306,15 +306,15 @@ impl<'m, P: Point> View<'m, P> {
         self.scene.surface(number)
     }
 
-    /// The ray of the image's point (x, y) in `interval`, as far as that lies ahead of the eye. Refuses NaN, infinity, and
-    /// directions more than 45° off `forward`, in either of the directions across it.
+    /// The ray of the image's point (x, y) in `interval`, as far as that lies ahead of the eye. Refuses NaN, and directions
+    /// more than 45° off `forward`, in either of the directions across it.
     #[inline(always)]
     pub fn ray(&self, [x, y]: [P::Scalar; 2], interval: &Interval<P::Scalar>) -> Result<ViewRay<P::Scalar>, RayError> {
         let ViewHeader { directions: [forward, right, up], unscale, farthest, .. } = &self.header;
         let direction: [P::Scalar; 3] = core::array::from_fn(|k| forward[k] + x * right[k] + y * up[k]);
         let [across, upward, speed] = direction;
         if !(across.abs() <= speed && upward.abs() <= speed) {
-            return Err(refused([x, y]));
+            return Err(RayError::OutOfView);
         }
         // See `Frame::ray`.
         let small = *unscale * P::Scalar::EPSILON;
@@ -344,16 +344,6 @@ impl<'m, P: Point> View<'m, P> {
         // One by one, for `map` of a nested array may stay a call, whose results come through memory.
         let turning = [turns(*right), turns(*up)];
         Facing { place, planes, range, ahead, turning }
-    }
-}
-
-/// Why a point of the image has no ray.
-#[cold]
-fn refused<S: Scalar>(place: [S; 2]) -> RayError {
-    match place.iter().find(|c| !c.is_finite()) {
-        None => RayError::OutOfView,
-        Some(c) if c.abs() == S::INFINITY => RayError::Infinite,
-        Some(_) => RayError::NotANumber,
     }
 }
 

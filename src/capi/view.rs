@@ -16,7 +16,8 @@ use crate::method::{
     Following, Remembered, clipping, clipping_coherent, clipping_predicted, newton, newton_coherent, newton_predicted,
 };
 use crate::point::Point;
-use crate::ray::Interval;
+use crate::ray::{Interval, RayError};
+use crate::scalar::Scalar;
 use crate::span::Order;
 use crate::view::{Camera, View, ViewError, ViewMemory, ViewRay};
 
@@ -204,13 +205,23 @@ pub(super) unsafe fn line<P: Point, M, R>(
             Ok(ray) => {
                 code_of(trace(&view, &mut line, (&mut memory, asked.number), &ray, &limits, &mut scratch, &mut work))
             }
-            Err(error) => (None.into(), of_ray(error)),
+            Err(error) => (None.into(), of_place(place, error)),
         };
         if let Some(place) = works.next() {
             *place = work.into();
         }
     }
     Ok(PATCHRAY_OK)
+}
+
+/// Why there is no ray of a place. For the kernel NaN is out of view: to tell would cost each ray some instructions.
+#[cold]
+fn of_place<S: Scalar>(place: &[S; 2], error: RayError) -> Code {
+    of_ray(match place.iter().find(|c| !c.is_finite()) {
+        None => error,
+        Some(c) if c.abs() == S::INFINITY => RayError::Infinite,
+        Some(_) => RayError::NotANumber,
+    })
 }
 
 /// # Safety

@@ -220,14 +220,8 @@ fn windows_of_any_numbers() {
                 }
             }
         }
-        for (place, error) in [
-            ([nan, 0.0], RayError::NotANumber),
-            ([0.0, nan], RayError::NotANumber),
-            ([infinite, 0.0], RayError::Infinite),
-            ([0.0, -infinite], RayError::Infinite),
-            ([f64::MAX, 0.0], RayError::OutOfView),
-        ] {
-            assert_eq!(view.ray(place, &Interval::ahead()).err(), Some(error));
+        for place in [[nan, 0.0], [0.0, nan], [infinite, 0.0], [0.0, -infinite], [f64::MAX, 0.0]] {
+            assert_eq!(view.ray(place, &Interval::ahead()).err(), Some(RayError::OutOfView));
         }
     }
 }
