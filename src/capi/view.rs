@@ -122,8 +122,9 @@ pub(super) struct OfLine<S> {
     pub(super) works: *mut patchray_work,
 }
 
-/// Traces a scan line: `memory` makes sure of the method's coherence memory, of so many surfaces, `room` makes its scratch of words, and `trace`
-/// answers a ray. The line is of patches in `order`; or of surfaces, where the view has no patches and the method needs none.
+/// Traces a scan line: `memory` makes sure of the method's coherence memory, of so many surfaces, `room` makes its scratch of
+/// words, and `trace` answers a ray. The line is of patches in `order`; or of surfaces, where the view has no patches and the
+/// method needs none.
 ///
 /// # Safety
 /// As for [`view_build`].
