@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use rayon::ThreadPool;
 use serde::Serialize;
 
-use super::outputs::{Outputs, StatsOutputs, only_png};
+use super::outputs::{Outputs, StatsOutputs};
 use super::{Failure, pool, progress};
 use crate::drawing::{Drawing, Drawn, Watch, draw};
 use crate::judge::{Agreement, OracleStats, Truth, ask};
@@ -82,8 +82,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
             help: "name files with -o and --stats, or use --json instead of the table".to_owned(),
         });
     }
-    only_png(&output)?;
-    Outputs::new(Some(&output), &[], flags)?;
+    Outputs::of_picture(Some(&output), &[], flags)?;
     let Scene { model, description, appearance, .. } = common_scene()?;
     let settings = Settings::of_flags(flags);
     let mut png = Output::create(&output)?;

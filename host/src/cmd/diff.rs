@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::Failure;
-use super::outputs::{Outputs, only_png};
+use super::outputs::Outputs;
 use crate::channels::difference::{Difference, OfChannel};
 use crate::channels::{Channels, read};
 use crate::output::{self, Output};
@@ -47,8 +47,7 @@ fn distance(text: &str) -> Result<f64, String> {
 pub fn run(args: &DiffArgs) -> Result<(), Failure> {
     let DiffArgs { first, second, tolerance, output, json, quiet } = args;
     let flags = Flags { json: *json, ..Flags::default() };
-    output.as_deref().map_or(Ok(()), only_png)?;
-    Outputs::new(output.as_deref(), &[], &flags)?.spare([first.as_path(), second.as_path()])?;
+    Outputs::of_picture(output.as_deref(), &[], &flags)?.spare([first.as_path(), second.as_path()])?;
     let [a, b] = [load(first)?, load(second)?];
     let Some(difference) = Difference::of(&a, &b, *tolerance) else {
         let [a, b] = [a, b].map(|channels| channels.size.map(|side| side.to_string()).join(" x "));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::outputs::{Outputs, only_png};
+use super::outputs::Outputs;
 use super::{Failure, say};
 use crate::output;
 use crate::picture::part::{Part, PartError};
@@ -30,8 +30,7 @@ pub struct MergeArgs {
 /// A file that is no part, or of another picture; rows that are in none; or an output that cannot be written.
 pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let MergeArgs { parts, output, quiet } = args;
-    only_png(output)?;
-    Outputs::new(Some(output), &[], &Flags::default())?.spare(parts.iter().map(PathBuf::as_path))?;
+    Outputs::of_picture(Some(output), &[], &Flags::default())?.spare(parts.iter().map(PathBuf::as_path))?;
     let mut whole: Option<Part> = None;
     for path in parts {
         let refused = |reason: PartError| Failure::Refused {

@@ -28,6 +28,23 @@ fn usage(message: &str, help: &str) -> Failure {
 pub(crate) struct Outputs<'f>(Vec<(&'f str, PathBuf)>);
 
 impl<'f> Outputs<'f> {
+    /// The same where `-o` names a picture, whose name is to promise no other format than PNG.
+    ///
+    /// # Errors
+    /// It does, or see [`Outputs::new`].
+    pub(crate) fn of_picture(
+        picture: Option<&Path>,
+        more: &[(&'f str, &Path)],
+        flags: &Flags,
+    ) -> Result<Self, Failure> {
+        if let Some(Ok(format)) = picture.map(ImageFormat::from_path)
+            && format != ImageFormat::Png
+        {
+            return Err(usage("pictures are written as PNG", "name a file that ends in .png; `--aov` writes OpenEXR"));
+        }
+        Outputs::new(picture, more, flags)
+    }
+
     /// Those of `-o` and of the flags, and `more`, each with its own flag.
     ///
     /// # Errors
@@ -63,14 +80,6 @@ impl<'f> Outputs<'f> {
             }
         }
         Ok(())
-    }
-}
-
-/// Refuses the name of a picture that promises another format than PNG.
-pub(crate) fn only_png(path: &Path) -> Result<(), Failure> {
-    match ImageFormat::from_path(path) {
-        Ok(ImageFormat::Png) | Err(_) => Ok(()),
-        Ok(_) => Err(usage("pictures are written as PNG", "name a file that ends in .png; `--aov` writes OpenEXR")),
     }
 }
 

@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::aov::{self, Aov};
 use super::load::{self, Loaded};
-use super::outputs::{Outputs, StatsOutputs, only_png};
+use super::outputs::{Outputs, StatsOutputs};
 use super::{Failure, interrupt, pixel, pool, preview, progress_in_rows, say, say_gave_up, summary};
 use crate::drawing::{Drawing, Drawn, Watch, digest, draw};
 use crate::output::{self, Output};
@@ -79,13 +79,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let Some(output) = &flags.output else {
         return Err(usage("the picture has no name", "add `-o OUT.png`, or `-o -` for standard output"));
     };
-    only_png(output)?;
     let unfinished = unfinished(output);
     if *resume && unfinished.is_none() {
         return Err(usage("an interrupted run to standard output leaves nothing", "name a file with -o"));
     }
     let channels: Vec<_> = aov.iter().map(|aov| ("--aov", aov.path())).collect();
-    let loaded = load::scene(scene, flags, &Outputs::new(Some(output), &channels, flags)?)?;
+    let loaded = load::scene(scene, flags, &Outputs::of_picture(Some(output), &channels, flags)?)?;
     let Some((_, appearance)) = &loaded.scene else {
         return Err(Failure::Internal("a scene without a description".to_owned()));
     };
