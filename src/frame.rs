@@ -229,8 +229,10 @@ impl<S: Scalar> Frame<S> {
         let all = || origin.iter().chain(&direction);
         // A sum of magnitudes is finite exactly if all terms are, unless it overflows; only then look closer.
         let sum = all().fold(S::ZERO, |sum, c| sum + c.abs());
-        if !sum.is_finite() {
-            refuse_not_finite(&origin, &direction)?;
+        if !sum.is_finite()
+            && let Some(error) = RayError::of_not_finite(all())
+        {
+            return Err(error);
         }
         let axis = Axis::dominant(&direction);
         let speed = axis.of(&direction).abs();
@@ -246,16 +248,6 @@ impl<S: Scalar> Frame<S> {
         }
         Ok(Ray { origin, direction, axis, far: distance > self.reach * S::from_u32(NEAR) })
     }
-}
-
-#[cold]
-fn refuse_not_finite<S: Scalar>(origin: &[S; 3], direction: &[S; 3]) -> Result<(), RayError> {
-    for c in origin.iter().chain(direction) {
-        if !c.is_finite() {
-            return Err(if c.abs() == S::INFINITY { RayError::Infinite } else { RayError::NotANumber });
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -20,6 +20,9 @@ pub enum Acceptance {
     Proved,
 }
 
+/// The most starts of Newton's method on one patch: the paper's number.
+pub const MAX_NEWTON_STARTS: u32 = 3;
+
 /// The bounds of one call: one ray through the whole scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits<S> {
@@ -27,7 +30,7 @@ pub struct Limits<S> {
     /// that a singular Jacobian led to. Starts that succeed need 2 to 4; each one more is paid only by starts that fail, and now
     /// and then saves one.
     pub newton_iterations: u32,
-    /// Parameter: starts per patch, at most 3 (the paper's number): the parallelogram, the entrance, the exit. Fewer is
+    /// Parameter: starts per patch, at most [`MAX_NEWTON_STARTS`]: the parallelogram, the entrance, the exit. Fewer is
     /// faster and loses roots at silhouettes.
     pub newton_starts: u32,
     /// Parameter: how often one Newton step may be halved because the residual grew. 0 is the undamped method.
@@ -70,7 +73,7 @@ impl<S: Scalar> Default for Limits<S> {
     fn default() -> Self {
         Limits {
             newton_iterations: 12,
-            newton_starts: 3,
+            newton_starts: MAX_NEWTON_STARTS,
             newton_halvings: 3,
             tolerance: S::TOLERANCE,
             critical_factor: S::ONE,
@@ -112,6 +115,15 @@ pub struct Extent {
 }
 
 impl<S: Scalar> Limits<S> {
+    /// Whether the parameters are what a person can mean: numbers, a tolerance of at least 0, at least one start and one step.
+    /// Of others rays find nothing, and no budget runs out that would say so; searches take them as they are.
+    pub fn in_range(&self) -> bool {
+        let Limits { tolerance, critical_factor, clip_threshold, newton_starts, newton_iterations, .. } = *self;
+        let finite = tolerance.is_finite() && critical_factor.is_finite() && clip_threshold.is_finite();
+        let steps = (1..=MAX_NEWTON_STARTS).contains(&newton_starts) && newton_iterations > 0;
+        finite && tolerance >= S::ZERO && steps
+    }
+
     /// The same budgets for a call that goes on counting where `work` stands, and began when it had counted this many spans.
     #[inline(always)]
     pub(crate) fn beyond(&self, work: &Work, spans: u32) -> Self {
@@ -364,6 +376,26 @@ mod tests {
         let extent = Extent { surfaces: 1, patches: 64, clipped: true, ..Extent::default() };
         assert_eq!(limits.worst_case(&extent).intersection_points, 65);
         assert_eq!(limits.worst_case(&Extent { clipped: false, ..extent }).intersection_points, 1);
+    }
+
+    /// Through the C interface, and by no name of a bound that ran out, these once answered misses.
+    #[test]
+    fn parameters_with_which_nothing_is_found_are_out_of_range() {
+        let good = Limits::<f64>::default();
+        assert!(
+            good.in_range() && Limits { tolerance: 0.0, newton_starts: 1, newton_iterations: 1, ..good }.in_range()
+        );
+        for bad in [
+            Limits { tolerance: -1e-300, ..good },
+            Limits { tolerance: f64::NAN, ..good },
+            Limits { critical_factor: f64::INFINITY, ..good },
+            Limits { clip_threshold: f64::NAN, ..good },
+            Limits { newton_starts: 0, ..good },
+            Limits { newton_starts: MAX_NEWTON_STARTS + 1, ..good },
+            Limits { newton_iterations: 0, ..good },
+        ] {
+            assert!(!bad.in_range(), "{bad:?}");
+        }
     }
 
     #[test]

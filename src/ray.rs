@@ -92,6 +92,16 @@ pub enum RayError {
     OutOfView,
 }
 
+impl RayError {
+    /// What is wrong with the first of these numbers that is not finite, if one is not.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn of_not_finite<'n, S: Scalar + 'n>(numbers: impl Iterator<Item = &'n S>) -> Option<Self> {
+        let mut numbers = numbers.filter(|c| !c.is_finite());
+        numbers.next().map(|c| if c.abs() == S::INFINITY { RayError::Infinite } else { RayError::NotANumber })
+    }
+}
+
 impl core::fmt::Display for RayError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {

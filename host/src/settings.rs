@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use patchray::limits::{Acceptance as KernelAcceptance, Limits};
+use patchray::limits::{Acceptance as KernelAcceptance, Limits, MAX_NEWTON_STARTS};
 use patchray::scalar::Scalar;
 use serde::Serialize;
 
@@ -12,7 +12,7 @@ use crate::lower::Preparation;
 use crate::scene::appearance::MAX_SIDE;
 use crate::scene::error::{InputError, OnInvalid};
 use crate::scene::source::SourceText;
-use crate::scene::trace::{Acceptance, MAX_STARTS, MAX_THREADS, Method, Precision, TraceSettings};
+use crate::scene::trace::{Acceptance, MAX_THREADS, Method, Precision, TraceSettings};
 
 pub mod bounds;
 
@@ -33,7 +33,7 @@ pub struct Flags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Tracing")]
     pub newton_iterations: Option<u32>,
     /// Newton starts per patch, 1 to 3
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_STARTS)),
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_NEWTON_STARTS)),
         help_heading = "Tracing")]
     pub newton_starts: Option<u32>,
     /// The share of an interval that a clip has to remove, else the interval is bisected [default: 0.2]

@@ -19,6 +19,7 @@
 mod export;
 mod export_views;
 mod lend;
+mod limits;
 mod panic;
 mod prepare;
 mod scratch;

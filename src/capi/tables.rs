@@ -1,11 +1,12 @@
 //! Tables in lent memory or flash, as the kernel's views of them.
 
 use super::lend::Lending;
-use super::status::{Code, PATCHRAY_LAYOUT_DIFFERS, PATCHRAY_TABLES};
+use super::status::{Code, PATCHRAY_LAYOUT_DIFFERS, PATCHRAY_OPTION, PATCHRAY_TABLES};
 use super::types::*;
 use crate::frame::Frame;
 use crate::grid::{GridSlot, Grids};
 use crate::layout::Table;
+use crate::method::Remembered;
 use crate::patch::Patches;
 use crate::point::Point;
 use crate::scalar::Scalar;
@@ -202,4 +203,50 @@ pub(super) unsafe fn grids<'c, S: Scalar>(
     // SAFETY: likewise.
     let references = unsafe { lending.slots(grids.references, grids.references_len) }?;
     Ok(Grids::new(slots, offsets, references))
+}
+
+/// What `newton` takes: patches of so many surfaces, and their trees.
+///
+/// # Safety
+/// As for [`scene`].
+#[inline(always)]
+pub(super) unsafe fn in_tree<'c, S: Scalar>(
+    lending: &mut Lending,
+    patches: *const patchray_patches<S>,
+    tree: *const patchray_tree<S>,
+    surfaces: usize,
+) -> Result<(Patches<'c, S>, Tree<'c, S>), Code> {
+    // SAFETY: the caller's.
+    let patches = unsafe { patches_of(lending, patches, surfaces) }?;
+    // SAFETY: likewise.
+    let tree = unsafe { self::tree(lending, tree) }?;
+    Ok((patches, tree))
+}
+
+/// What the coherent methods take: patches of so many surfaces, their grids, and memory for a scan line.
+///
+/// # Safety
+/// As for [`scene`] and [`Lending::slot_each`].
+#[inline(always)]
+pub(super) unsafe fn coherent<'c, S: Scalar>(
+    lending: &mut Lending,
+    (patches, grids): (*const patchray_patches<S>, *const patchray_grids<S>),
+    (memory, memory_len, scan_line): (*mut patchray_remembered<S>, usize, u32),
+    surfaces: usize,
+) -> Result<Coherent<'c, S>, Code> {
+    // SAFETY: the caller's.
+    let patches = unsafe { patches_of(lending, patches, surfaces) }?;
+    // SAFETY: likewise.
+    let grids = unsafe { self::grids(lending, grids) }?;
+    // SAFETY: likewise.
+    let memory = unsafe { lending.slot_each(memory, memory_len, surfaces) }?;
+    if is_number_of_line(scan_line) { Ok((patches, grids, memory)) } else { Err(PATCHRAY_OPTION) }
+}
+
+pub(super) type Coherent<'c, S> = (Patches<'c, S>, Grids<'c, S>, &'c mut [Remembered<S>]);
+
+/// Whether a scan line can have this number. The last one is none's: plus one it is what empty slots of memory hold.
+#[inline(always)]
+pub(super) fn is_number_of_line(number: u32) -> bool {
+    number < u32::MAX
 }

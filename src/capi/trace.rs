@@ -5,75 +5,13 @@ use super::status::*;
 use super::types::*;
 use super::{scratch, tables};
 use crate::bernstein::Basis;
-use crate::limits::{Acceptance, GaveUp, Limits, Work};
+use crate::limits::{GaveUp, Limits, Work};
 use crate::method::{clipping, clipping_coherent, newton, newton_coherent};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use heapless::Vec;
-
-/// The most starts that a patch has.
-const MAX_STARTS: u32 = 3;
-
-impl<S: Scalar> patchray_limits<S> {
-    pub(super) fn defaults() -> Self {
-        let limits = Limits::default();
-        patchray_limits {
-            tolerance: limits.tolerance,
-            critical_factor: limits.critical_factor,
-            clip_threshold: limits.clip_threshold,
-            newton_iterations: limits.newton_iterations,
-            newton_starts: limits.newton_starts,
-            newton_halvings: limits.newton_halvings,
-            acceptance: PATCHRAY_ACCEPTANCE_PAPER,
-            surfaces: limits.surfaces,
-            nodes: limits.nodes,
-            patches: limits.patches,
-            voxels: limits.voxels,
-            spans: limits.spans,
-            newton_steps: limits.newton_steps,
-            clip_steps: limits.clip_steps,
-            bisections: limits.bisections,
-            pending_domains: limits.pending_domains,
-        }
-    }
-
-    /// In the kernel's words.
-    #[inline(always)]
-    pub(super) fn checked(&self) -> Result<Limits<S>, Code> {
-        if !(self.tolerance.is_finite() && self.critical_factor.is_finite() && self.clip_threshold.is_finite()) {
-            return Err(PATCHRAY_OPTION);
-        }
-        // With these nothing is found, and nothing ran out that would say so.
-        let finds = self.tolerance >= S::ZERO && self.newton_iterations > 0;
-        if !(finds && (1..=MAX_STARTS).contains(&self.newton_starts)) {
-            return Err(PATCHRAY_OPTION);
-        }
-        Ok(Limits {
-            newton_iterations: self.newton_iterations,
-            newton_starts: self.newton_starts,
-            newton_halvings: self.newton_halvings,
-            tolerance: self.tolerance,
-            critical_factor: self.critical_factor,
-            acceptance: match self.acceptance {
-                PATCHRAY_ACCEPTANCE_PAPER => Acceptance::Paper,
-                PATCHRAY_ACCEPTANCE_PROVED => Acceptance::Proved,
-                _ => return Err(PATCHRAY_OPTION),
-            },
-            clip_threshold: self.clip_threshold,
-            surfaces: self.surfaces,
-            nodes: self.nodes,
-            patches: self.patches,
-            voxels: self.voxels,
-            spans: self.spans,
-            newton_steps: self.newton_steps,
-            clip_steps: self.clip_steps,
-            bisections: self.bisections,
-            pending_domains: self.pending_domains,
-        })
-    }
-}
 
 impl<S: Scalar> From<Option<Hit<S>>> for patchray_hit<S> {
     #[inline(always)]
@@ -292,14 +230,7 @@ pub(super) unsafe fn clipping_coherent_closest<P: Point>(
     // SAFETY: the caller's, here and within.
     unsafe {
         let tables = |lending: &mut Lending, surfaces| {
-            let patches = tables::patches_of(lending, patches, surfaces)?;
-            let grids = tables::grids(lending, grids)?;
-            let memory = lending.slot_each(memory, memory_len, surfaces)?;
-            // Plus one it is what empty slots of memory hold.
-            if scan_line == u32::MAX {
-                return Err(PATCHRAY_OPTION);
-            }
-            Ok((patches, grids, memory))
+            tables::coherent(lending, (patches, grids), (memory, memory_len, scan_line), surfaces)
         };
         let room = |words| scratch::clip::<P>(words);
         with::<P, _, _>(
@@ -332,11 +263,7 @@ pub(super) unsafe fn newton_closest<P: Point>(
 ) -> Result<Code, Code> {
     // SAFETY: the caller's, here and within.
     unsafe {
-        let tables = |lending: &mut Lending, surfaces| {
-            let patches = tables::patches_of(lending, patches, surfaces)?;
-            let tree = tables::tree(lending, tree)?;
-            Ok((patches, tree))
-        };
+        let tables = |lending: &mut Lending, surfaces| tables::in_tree(lending, patches, tree, surfaces);
         let room = |words| scratch::newton::<P>(words);
         with::<P, _, _>(scene, ray, limits, scratch, out, tables, room, |asked, (patches, tree), scratch, work| {
             let Asked { scene, ray, interval, limits, .. } = asked;
@@ -357,11 +284,7 @@ pub(super) unsafe fn newton_any<P: Point>(
 ) -> Result<Code, Code> {
     // SAFETY: the caller's, here and within.
     unsafe {
-        let tables = |lending: &mut Lending, surfaces| {
-            let patches = tables::patches_of(lending, patches, surfaces)?;
-            let tree = tables::tree(lending, tree)?;
-            Ok((patches, tree))
-        };
+        let tables = |lending: &mut Lending, surfaces| tables::in_tree(lending, patches, tree, surfaces);
         let room = |words| scratch::newton::<P>(words);
         with::<P, _, _>(scene, ray, limits, scratch, out, tables, room, |asked, (patches, tree), scratch, work| {
             let Asked { scene, ray, interval, limits, .. } = asked;
@@ -384,14 +307,7 @@ pub(super) unsafe fn newton_coherent_closest<P: Point>(
     // SAFETY: the caller's, here and within.
     unsafe {
         let tables = |lending: &mut Lending, surfaces| {
-            let patches = tables::patches_of(lending, patches, surfaces)?;
-            let grids = tables::grids(lending, grids)?;
-            let memory = lending.slot_each(memory, memory_len, surfaces)?;
-            // Plus one it is what empty slots of memory hold.
-            if scan_line == u32::MAX {
-                return Err(PATCHRAY_OPTION);
-            }
-            Ok((patches, grids, memory))
+            tables::coherent(lending, (patches, grids), (memory, memory_len, scan_line), surfaces)
         };
         with::<P, _, _>(
             scene,

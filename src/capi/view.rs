@@ -177,8 +177,7 @@ pub(super) unsafe fn line<P: Point, M, R>(
     let interval = Interval::new(asked.t_min, asked.t_max).ok_or(PATCHRAY_RAY_INTERVAL)?;
     let window = Window { x: asked.x, y: asked.y };
     let has_extent = window.x[0] <= window.x[1] && window.y[0] <= window.y[1];
-    // The last number is that of no line: plus one it is what empty slots of memory hold.
-    if !(has_extent && asked.places_len.is_multiple_of(2) && asked.number < u32::MAX) {
+    if !(has_extent && asked.places_len.is_multiple_of(2) && tables::is_number_of_line(asked.number)) {
         return Err(PATCHRAY_OPTION);
     }
     let built = if has_patches {
@@ -218,11 +217,7 @@ pub(super) unsafe fn line<P: Point, M, R>(
 /// Why there is no ray of a place. For the kernel NaN is out of view: to tell would cost each ray some instructions.
 #[cold]
 fn of_place<S: Scalar>(place: &[S; 2], error: RayError) -> Code {
-    of_ray(match place.iter().find(|c| !c.is_finite()) {
-        None => error,
-        Some(c) if c.abs() == S::INFINITY => RayError::Infinite,
-        Some(_) => RayError::NotANumber,
-    })
+    of_ray(RayError::of_not_finite(place.iter()).unwrap_or(error))
 }
 
 /// # Safety

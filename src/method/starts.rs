@@ -7,7 +7,7 @@
 use crate::alone::Alone;
 use crate::contract::{Single, single_of};
 use crate::fallback::Fallback;
-use crate::limits::{Acceptance, Limit, Work};
+use crate::limits::{Acceptance, Limit, MAX_NEWTON_STARTS, Work};
 use crate::newton::{Decided, Solver};
 use crate::patch::{Crossing, Patch};
 use crate::point::Point;
@@ -134,7 +134,8 @@ fn from_patch<P: Point>(
         Some([first, last]) => (Some(patch.at(&first)), Some(patch.at(&last))),
         None => (None, None),
     };
-    let others = if entrance_first { [entrance, patch.parallelogram(crossing), exit] } else { [entrance, exit, None] };
+    let others: [_; MAX_NEWTON_STARTS as usize] =
+        if entrance_first { [entrance, patch.parallelogram(crossing), exit] } else { [entrance, exit, None] };
     for start in others.into_iter().flatten() {
         if starts_left == 0 {
             break;

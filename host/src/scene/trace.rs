@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use clap::ValueEnum;
+use patchray::limits::MAX_NEWTON_STARTS;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
@@ -117,9 +118,6 @@ impl Acceptance {
     }
 }
 
-/// The most Newton starts per patch: the parallelogram, the entrance and the exit are all there are.
-pub const MAX_STARTS: u32 = 3;
-
 /// The most threads. More would let a slip of the pen ask for millions.
 pub const MAX_THREADS: u32 = 1024;
 
@@ -134,7 +132,7 @@ pub struct TraceSettings {
     pub acceptance: Option<Acceptance>,
     /// Newton iterations per start, at least 1.
     pub newton_iterations: Option<u32>,
-    /// Newton starts per patch, 1 to [`MAX_STARTS`].
+    /// Newton starts per patch, 1 to [`MAX_NEWTON_STARTS`].
     pub newton_starts: Option<u32>,
     /// The share of an interval, between 0 and 1, that a clip has to remove, else the interval is bisected.
     pub clip_threshold: Option<f64>,
@@ -200,7 +198,7 @@ impl TraceTable {
             precision: self.precision,
             acceptance: self.acceptance,
             newton_iterations: count("`newton_iterations`", &self.newton_iterations)?,
-            newton_starts: at_most("`newton_starts`", &self.newton_starts, MAX_STARTS)?,
+            newton_starts: at_most("`newton_starts`", &self.newton_starts, MAX_NEWTON_STARTS)?,
             clip_threshold: self
                 .clip_threshold
                 .as_ref()
