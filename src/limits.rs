@@ -142,9 +142,9 @@ impl<S: Scalar> Limits<S> {
 
     /// The most work one call can do under these limits, whatever the ray, in a scene of this extent.
     pub fn worst_case(&self, extent: &Extent) -> Work {
-        // A view's clipping method may go through what the ray meets once more, where a fold is all but touched.
-        let again = u32::from(extent.clipped && extent.spans > 0);
-        let walks = extent.walks.max(1).saturating_add(again);
+        // In each walk a view's clipping method may go through what the ray meets once more, where a fold is all but touched.
+        let walks = extent.walks.max(1);
+        let walks = if extent.clipped && extent.spans > 0 { walks.saturating_mul(2) } else { walks };
         // A remembered point and the verification's starts come on top of those of the full search.
         let starts_per_patch = self.newton_starts.saturating_add(extent.walks.min(1));
         let patches = extent.patches.saturating_mul(walks).min(self.patches);
@@ -163,8 +163,8 @@ impl<S: Scalar> Limits<S> {
                 .saturating_add(extent.scene_voxels)
                 .min(self.voxels),
             // Each of a line's spans may come into the list past all before it, n (n − 1) / 2 times in all, and is looked at
-            // five times: for the list, for its surface, in two searches, and in a walk around a fold.
-            spans_visited: (spans.saturating_mul(spans + 9) / 2).min(u64::from(self.spans)) as u32,
+            // six times: for the list, for its surface, in two searches, and in a walk around a fold in each.
+            spans_visited: (spans.saturating_mul(spans + 11) / 2).min(u64::from(self.spans)) as u32,
             newton_starts: starts,
             newton_steps: if extent.clipped || self.acceptance == Acceptance::Proved {
                 self.newton_steps

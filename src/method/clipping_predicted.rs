@@ -14,7 +14,7 @@
 //!
 //! Source: the paper's section "An Improvement of Bézier Clipping".
 
-use super::follow::{Best, Followed, Following};
+use super::follow::{Best, Claim, Followed, Following};
 use crate::alone::Alone;
 use crate::clipper::{ClipRoom, Clipper};
 use crate::contract::Single;
@@ -177,9 +177,10 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         let alone = Alone::new(&point, &local, of_window.bend);
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
-        let mut verified = true;
-        nearby.visit(&ray.planes, point.depth, limits, work, exempt, |number, patch, crossing, work| {
-            let farthest = best.map_or(point.depth, |best| best.root.depth);
+        let (mut verified, mut claim) = (true, Claim::of(&point, surface, limits));
+        let up_to = claim.up_to(best.as_ref());
+        nearby.visit(&ray.planes, up_to, limits, work, exempt, |number, patch, crossing, work| {
+            let farthest = claim.up_to(best.as_ref());
             let owner = number == surface && patch.domain().holds(point.u, point.v);
             let known = if owner {
                 met_at_most_once(patch, crossing, limits)
@@ -191,9 +192,13 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
                 return Ok(farthest);
             }
             verified = false;
-            self.clip(number, patch, best, work)?;
-            Ok(best.map_or(farthest, |best| best.root.depth))
+            self.clip(number, patch, best, Some(&mut claim), work)?;
+            Ok(claim.up_to(best.as_ref()))
         })?;
+        if claim.contested {
+            self.decided = None;
+            return Ok(false);
+        }
         if verified {
             work.verified += 1;
             P::Scalar::tell(|| Event::Verified);
@@ -218,7 +223,7 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
             |number, patch, crossing, work| {
                 let range = DepthRange { min: ray.range.min, max: best.map_or(ray.range.max, |best| best.root.depth) };
                 if crossing.overlaps(&range) {
-                    self.clip(number, patch, best, work)?;
+                    self.clip(number, patch, best, None, work)?;
                 }
                 Ok(best.map_or(ray.range.max, |best| best.root.depth))
             },
@@ -234,15 +239,27 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         number: u32,
         patch: &Patch<P::Scalar>,
         best: &mut Option<Best<P::Scalar>>,
+        mut claim: Option<&mut Claim<P::Scalar>>,
         work: &mut Work,
     ) -> Result<(), Limit> {
         if self.decided == Some(number) {
             return Ok(());
         }
         let (before, bisections) = (*best, work.bisections);
-        let grazing = self.clip_region(number, patch.domain().bounds(), best, work)?;
+        let grazing = self.clip_region(number, patch.domain().bounds(), best, claim.as_deref_mut(), work)?;
         let plain = !grazing && work.bisections == bisections;
-        if plain || self.decided.is_some() || self.limits.acceptance == Acceptance::Paper {
+        if let Some(decided) = self.decided {
+            // Found in another region than the root before, it may be that of a surface that coincides: the first is named.
+            if let (Some(old), Some(new)) = (before, &*best)
+                && old.surface == decided
+                && old.surface < new.surface
+                && Claim::of(&old.root, decided, self.limits).is_met_by(&new.root, new.surface)
+            {
+                *best = before;
+            }
+            return Ok(());
+        }
+        if plain || self.limits.acceptance == Acceptance::Paper {
             return Ok(());
         }
         let (ray, limits, nearby) = (self.ray, self.limits, self.nearby);
@@ -254,7 +271,7 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         })?;
         self.decided = Some(number);
         *best = before;
-        self.clip_region(number, region.sides, best, work)?;
+        self.clip_region(number, region.sides, best, claim, work)?;
         Ok(())
     }
 
@@ -264,12 +281,16 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         number: u32,
         sides: [[P::Scalar; 2]; 2],
         best: &mut Option<Best<P::Scalar>>,
+        mut claim: Option<&mut Claim<P::Scalar>>,
         work: &mut Work,
     ) -> Result<bool, Limit> {
         let surface = self.view.surface(number as usize).ok_or(Limit::Slot)?;
         let (planes, mut grazing) = (&self.ray.planes, false);
         self.clipper(&surface)?.roots_within(Region { sides, ..Region::WHOLE }, work, |root, work| {
             grazing |= root.grazing;
+            if let Some(claim) = &mut claim {
+                claim.hear(&root, number);
+            }
             Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
         })?;
         Ok(grazing)

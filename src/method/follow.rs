@@ -8,8 +8,8 @@
 //! Source for the second derivatives: M. J. D. Powell's symmetric form of Broyden's update, "A new algorithm for unconstrained
 //! optimization", 1970: of all symmetric matrices that explain the last change it is the one nearest to the old.
 
-use crate::limits::Work;
-use crate::local::Local;
+use crate::limits::{Limits, Work};
+use crate::local::{Local, noise};
 use crate::planes::Planes;
 use crate::root::Root;
 use crate::scalar::Scalar;
@@ -132,6 +132,48 @@ impl<S: Scalar> Best<S> {
                 *best = Some(found);
             }
         }
+    }
+}
+
+/// The root that memory led to, while the testing ray judges it.
+///
+/// Where surfaces coincide, or meet at an edge, rounding alone would say which of their roots is closer, and it depends on the
+/// start: which surface is named must not depend on what the memory held. So a root that another surface's meets in depth is
+/// not judged, and the ray is searched in full, by starts that are the same for all.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Claim<S> {
+    surface: u32,
+    depth: S,
+    /// How far apart in depth roots may be said to be that are one: each is off by the tolerance.
+    tie: S,
+    /// Whether another surface's root was found at its depth.
+    pub(super) contested: bool,
+}
+
+impl<S: Scalar> Claim<S> {
+    /// Of a root that memory led to on a surface.
+    #[inline(always)]
+    pub(super) fn of(root: &Root<S>, surface: u32, limits: &Limits<S>) -> Self {
+        let tie = (limits.tolerance + noise()) * S::from_u32(4);
+        Claim { surface, depth: root.depth, tie, contested: false }
+    }
+
+    /// How far to look for what may be closer than the best root so far, or contest this one; nowhere if that is settled.
+    #[inline(always)]
+    pub(super) fn up_to(&self, best: Option<&Best<S>>) -> S {
+        if self.contested { S::LEAST } else { best.map_or(self.depth, |best| best.root.depth) + self.tie }
+    }
+
+    /// Hears of a root that was found on a surface.
+    #[inline(always)]
+    pub(super) fn hear(&mut self, root: &Root<S>, surface: u32) {
+        self.contested |= self.is_met_by(root, surface);
+    }
+
+    /// Whether a root of another surface lies at its depth.
+    #[inline(always)]
+    pub(super) fn is_met_by(&self, root: &Root<S>, surface: u32) -> bool {
+        surface != self.surface && (root.depth - self.depth).abs() <= self.tie
     }
 }
 

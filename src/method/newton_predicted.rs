@@ -10,13 +10,13 @@
 //! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm".
 
 use super::ScratchView;
-use super::follow::{Best, Followed, Following};
+use super::follow::{Best, Claim, Followed, Following};
 use super::starts::{First, roots_of_patch};
 use crate::alone::Alone;
 use crate::fallback::Fallback;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::Line;
-use crate::newton::Solver;
+use crate::newton::{Decided, Solver};
 use crate::patch::Patch;
 use crate::planes::DepthRange;
 use crate::point::Point;
@@ -162,9 +162,10 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         let alone = Alone::new(&point, &local, solver.surface.bend);
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
-        let mut verified = true;
-        nearby.visit(planes, point.depth, limits, work, exempt, |number, patch, crossing, work| {
-            let farthest = best.map_or(point.depth, |best| best.root.depth);
+        let (mut verified, mut claim) = (true, Claim::of(&point, surface, limits));
+        let up_to = claim.up_to(best.as_ref());
+        nearby.visit(planes, up_to, limits, work, exempt, |number, patch, crossing, work| {
+            let farthest = claim.up_to(best.as_ref());
             let owner = number == surface && patch.domain().holds(point.u, point.v);
             let known = if owner {
                 met_at_most_once(patch, crossing, limits)
@@ -178,10 +179,15 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
             verified = false;
             solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
             roots_of_patch(solver, *fallback, patch, crossing, First::Entrance, work, |root, work| {
+                claim.hear(&root, number);
                 Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
             })?;
-            Ok(best.map_or(farthest, |best| best.root.depth))
+            Ok(claim.up_to(best.as_ref()))
         })?;
+        if claim.contested {
+            solver.decided = Decided::Nothing;
+            return Ok(false);
+        }
         if verified {
             work.verified += 1;
             P::Scalar::tell(|| Event::Verified);

@@ -14,6 +14,7 @@ use patchray::point::{Plain, Weighted};
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
 use patchray::subdivide::Subdivision;
+use patchray_host::scene::model::Model;
 use patchray_host::scene::shapes::Random;
 use patchray_host::scene::trace::Precision;
 use rayon::prelude::*;
@@ -162,4 +163,62 @@ fn answers_depend_on_nothing_but_the_ray() {
 #[test]
 fn nor_do_those_of_clipping_by_the_papers_rule() {
     suite(Acceptance::Paper, &[InView::ClippingCoherent, InView::ClippingPredicted]);
+}
+
+/// How many answers name a surface of the second copy of a model that is there twice; and how many hits there were.
+fn second_named<P: Kind>(case: &Case, acceptance: Acceptance, method: InView) -> [usize; 2] {
+    let options = Subdivision { flatness: P::Scalar::from_f64(0.003), ..Subdivision::default() };
+    let twice = Model::numbered(case.model.surfaces.iter().chain(&case.model.surfaces).cloned().collect());
+    let prepared = Prepared::<P>::new(&twice, 1.0, &options);
+    let first = case.model.surfaces.len();
+    // What these remember of each surface may be of different rays, if other rays came in between.
+    let by_the_letter =
+        matches!(method, InView::NewtonCoherent | InView::NewtonCoherentProving | InView::ClippingCoherent);
+    let each = |(k, named): (usize, Named)| {
+        let rows = rows(rays_per_case(RAYS), k == 1, 77 + k as u64);
+        let courses = OTHERS.into_iter().filter(|_| !by_the_letter).chain([Course::Forward]);
+        let answers = courses.flat_map(|course| trace(&prepared, &named, &rows, method, course, acceptance));
+        let mut count = [0; 2];
+        for hit in answers.flatten().filter_map(|answer| answer.ok()?.ok()?) {
+            count[0] += usize::from(hit.surface as usize >= first);
+            count[1] += 1;
+        }
+        count
+    };
+    let all: Vec<_> = cameras(&case.model.surfaces).into_iter().step_by(3).enumerate().collect();
+    all.into_par_iter().map(each).reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
+}
+
+/// Started from what was remembered, the roots of two surfaces that coincide differ by roundings: a picture of them once
+/// showed the one or the other, ray by ray.
+#[test]
+fn of_surfaces_that_coincide_the_first_is_named() {
+    let mut failures = Vec::new();
+    for case in cases() {
+        for method in InView::ALL {
+            for acceptance in [Acceptance::Paper, Acceptance::Proved] {
+                let of_precisions = if is_rational(&case.model) {
+                    [
+                        second_named::<Weighted<f32>>(&case, acceptance, method),
+                        second_named::<Weighted<f64>>(&case, acceptance, method),
+                    ]
+                } else {
+                    [
+                        second_named::<Plain<f32>>(&case, acceptance, method),
+                        second_named::<Plain<f64>>(&case, acceptance, method),
+                    ]
+                };
+                for ([second, hits], precision) in of_precisions.into_iter().zip([Precision::F32, Precision::F64]) {
+                    println!("{} {method:?} {precision:?} {acceptance:?}: {second} of {hits}", case.name);
+                    if second > 0 {
+                        failures.push(format!(
+                            "{} {method:?} {precision:?} {acceptance:?}: {second} of {hits} hits",
+                            case.name
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "hits of the second copy:\n{}", failures.join("\n"));
 }

@@ -72,3 +72,23 @@ fn another_line_is_not_remembered_and_an_unknown_rate_predicts_the_last_point() 
     memory.go_on([0.3, 0.4], None, [0.2, 0.0], 6);
     assert_eq!(memory.predict([0.3, 0.1], 6), Some([0.3, 0.4]));
 }
+
+/// Of two surfaces that coincide rounding once chose the one that is named, from ray to ray.
+#[test]
+fn a_claim_is_contested_by_another_surface_at_its_depth() {
+    let root = |depth| Root { u: 0.5, v: 0.5, depth, grazing: false };
+    let limits = Limits::<f64>::default();
+    let claim = Claim::of(&root(0.25), 3, &limits);
+    let after = |depth, surface| {
+        let mut claim = claim;
+        claim.hear(&root(depth), surface);
+        claim
+    };
+    let best = Best { root: root(0.25), surface: 3, kept: true };
+    assert!(after(0.25 + 2.0 * limits.tolerance, 2).contested && after(0.25 - 2.0 * limits.tolerance, 4).contested);
+    assert_eq!(after(0.25, 2).up_to(Some(&best)), f64::LEAST);
+    // Its own surface found once more, and what lies apart.
+    for other in [after(0.25, 3), after(0.25 + 1e-9, 2), after(0.1, 2)] {
+        assert!(!other.contested && other.up_to(Some(&best)) > 0.25);
+    }
+}
