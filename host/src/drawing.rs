@@ -1,5 +1,6 @@
 //! Drawing: what rays see becomes the pixels of a picture, a row of them a job.
 
+use std::fmt::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::ProgressBar;
@@ -184,13 +185,25 @@ fn pixels(lines: &[Vec<Colour>]) -> Vec<picture::Rgb> {
     (0..width).map(pixel).collect()
 }
 
+/// The hash of text, as it is written.
+struct Hashed(Sha256);
+
+impl Write for Hashed {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        self.0.update(text);
+        Ok(())
+    }
+}
+
 /// What a picture depends on, in 64 hexadecimal digits: equal ones mean that all rows of two runs fit together, whichever
 /// files the scene was read from and whatever the threads. SHA-256, since parts are put together in trust of it.
 pub fn digest(model: &Model, appearance: &Appearance, settings: &Settings, view: &View) -> String {
     let settings = Settings { threads: 0, ..*settings };
-    // Numbers are written so that they read back to the same bits.
-    let text = format!("{} {view:?} {settings:?} {appearance:?} {model:?}", env!("CARGO_PKG_VERSION"));
-    Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+    let mut hashed = Hashed(Sha256::new());
+    // Numbers are written so that they read back to the same bits; into the hash, for the text of a large model is larger still.
+    let version = env!("CARGO_PKG_VERSION");
+    write!(hashed, "{version} {view:?} {settings:?} {appearance:?} {model:?}").expect("a hash takes any text");
+    hashed.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]
