@@ -16,6 +16,7 @@ use crate::picture::part::Part;
 use crate::picture::rows::Rows;
 use crate::scene::camera::View;
 use crate::scene::sampling::Sampling;
+use crate::scene::trace::Precision;
 use crate::settings::{Flags, SizeFlag};
 use crate::shade::shadows::Shadows;
 use crate::stats::{MethodsByKind, RaysByKind, Stats};
@@ -206,9 +207,13 @@ fn refuse_pixels(drawn: &Drawn, scene: &Path, loaded: &Loaded) -> Result<(), Fai
         return Ok(());
     };
     let precision = loaded.settings.precision;
+    let help = match precision {
+        Precision::F32 => "bring the camera's vectors to the size of the surfaces, or use --precision f64",
+        Precision::F64 => "bring the camera, and the scene, to a size whose inverse a number can hold",
+    };
     Err(Failure::Refused {
         file: scene.display().to_string(),
         reason: format!("the camera's ray of pixel ({px}, {py}) cannot be traced in {precision:?}: {error}"),
-        help: "bring the camera's vectors to the size of the surfaces, or use --precision f64".to_owned(),
+        help: help.to_owned(),
     })
 }

@@ -287,8 +287,8 @@ impl Report {
             ("Coherent s", true),
             ("Spread %", true),
             ("Gain %", true),
-            ("Points", true),
-            ("Coherent", true),
+            ("Points, original", true),
+            ("Points, coherent", true),
             ("Original, any hit s", true),
         ];
         let title = format!("Table 4. Where coherence does not pay: {}", self.setting("rays one by one"));
@@ -325,10 +325,21 @@ impl Report {
                 }
             }
             .to_owned(),
-            "Twice: intersection points in excess of the roots that the oracle finds on their ray. Wrong, missed and \
-             phantom pixels are by the oracle too."
+            "Table 3: performance is what jittered samples save over uniform ones, as a gain is: \
+             below 0 they cost time; the spread is the larger of both."
+                .to_owned(),
+            "Table 4: shuffled rays come in no order; shadow rays go from the hits to the first light. Points are \
+             intersection points. \"Any hit\" ends at the first hit between a point and the light, whichever it is."
                 .to_owned(),
         ];
+        if self.scenes.iter().any(|scene| scene.oracle.is_some()) {
+            notes.push(
+                "By the oracle: \"twice\" are intersection points in excess of the roots on their ray; \"wrong\" are pixels \
+                 with a hit that is not the closest, \"missed\" with none where there is one, \"phantom\" with one where \
+                 there is none."
+                    .to_owned(),
+            );
+        }
         for SceneReport { name, oracle, numerical, clipping, .. } in &self.scenes {
             if let Some(OracleStats { rays, hit_rays, roots, open, .. }) = oracle {
                 let [rays, hits, roots, open] = [*rays, *hit_rays, *roots, *open].map(grouped);
