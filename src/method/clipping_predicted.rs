@@ -7,6 +7,8 @@
 //! - the testing ray meets the patches of all surfaces, so that one verification answers the ray, and of each patch that
 //!   it meets the domain is clipped, of the surface's own net: the paper weighs this too, and leaves it for the memory that
 //!   patches of their own would take;
+//! - a root that another surface's meets in depth is not judged, so that it does not depend on the memory which of surfaces
+//!   that coincide is named;
 //! - a search in full clips the domains of the patches that the ray meets, of all surfaces, front to back, and ends where no
 //!   other can be closer.
 //!

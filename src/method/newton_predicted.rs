@@ -5,6 +5,8 @@
 //! - the start is predicted: the previous (u, v) moves on by the derivatives that the last Newton steps gave;
 //! - only the surface that the previous ray hit is tried first, and the testing ray meets the patches of all surfaces, so
 //!   that one verification answers the ray; it ends at the closest point so far;
+//! - a root that another surface's meets in depth is not judged, so that it does not depend on the memory which of surfaces
+//!   that coincide is named;
 //! - a search in full goes front to back over the patches of all surfaces, and ends where no other can be closer.
 //!
 //! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm".
