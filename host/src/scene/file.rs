@@ -30,12 +30,15 @@ use super::contents::{self, Contents, EntryTable, GroupTable, Names};
 use super::error::{InputError, OnInvalid, Skipped};
 use super::light::{Light, LightTable};
 use super::model::Model;
-use super::nearest::did_you_mean;
 use super::patches::{self, PatchFile};
 use super::polygon::PolygonTable;
 use super::source::SourceText;
 use super::spline::SplineSummary;
 use super::trace::{TraceSettings, TraceTable};
+use refusal::refusal;
+
+mod refusal;
+mod strict;
 
 /// What a scene file says.
 #[derive(Clone, Debug, PartialEq)]
@@ -156,7 +159,7 @@ struct DescriptionTable {
 }
 
 fn describe(source: &SourceText) -> Result<Description, InputError> {
-    let table: DescriptionTable = toml::from_str(source.text()).map_err(|error| refusal(source, &error))?;
+    let table: DescriptionTable = strict::from_str(source.text()).map_err(|error| refusal(source, &error))?;
     let check = Check { source };
     let missing =
         |what: &str, help: &str| source.refuse(0..0, format!("the scene has no {what}"), "in this file", help);
@@ -205,39 +208,6 @@ fn lights(
             "write a table `[[lights]]` for each light",
         )),
     }
-}
-
-/// The refusal for what the TOML reader did not accept.
-fn refusal(source: &SourceText, error: &toml::de::Error) -> InputError {
-    let message = error.message().trim().replace('\n', ": ");
-    // An unknown name is told with the names that would do: "unknown field `x`, expected one of `a`, `b`".
-    let names: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let (message, label, help) = match &names[..] {
-        [unknown, known @ ..] if message.starts_with("unknown ") && !known.is_empty() => (
-            format!("there is no `{unknown}` here{}", did_you_mean(unknown, known).unwrap_or_default()),
-            "unknown",
-            format!("write one of {}", known.join(", ")),
-        ),
-        _ if message.starts_with("missing field") => (message.clone(), "in here", "add the field".to_owned()),
-        _ if message.starts_with("invalid") => (in_words(&message), "not as expected", "correct this value".to_owned()),
-        _ => (message.clone(), "here", "the file is TOML: `name = value` and `[table]`; strings in quotes".to_owned()),
-    };
-    source.refuse(error.span().unwrap_or(0..0), message, label, help)
-}
-
-/// A reader's refusal of a value, without names of this program's types: "invalid type: string "big", expected u32".
-fn in_words(message: &str) -> String {
-    let Some((found, expected)) = message.rsplit_once(", expected ") else {
-        return message.to_owned();
-    };
-    let expected = match expected {
-        "u32" | "u64" => "a whole number, 0 or more",
-        "f64" => "a number",
-        "a sequence" => "a list in brackets",
-        _ if expected.starts_with("struct ") => "a table, such as `{ name = value }`",
-        _ => expected,
-    };
-    format!("{found}, expected {expected}")
 }
 
 #[cfg(test)]

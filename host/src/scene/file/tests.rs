@@ -79,6 +79,78 @@ fn wrong_types() {
     );
 }
 
+/// Refuses `LEAST` with `lines` behind it, from line 5, with this help.
+fn helped_after(lines: &str, place: &str, message: &str, help: &str) {
+    let text = format!("{LEAST}{lines}");
+    refused(&text, place, message);
+    let report = rendered(&parse("s.toml", &text).expect_err("refused"));
+    assert!(report.contains(&format!("help: {help}")), "{report}");
+}
+
+#[test]
+fn lists_are_no_tables() {
+    let table = "invalid type: list, expected a table, such as `{ name = value }`";
+    let surfaces = |entries: &str| format!("surfaces = [{entries}]\n[camera]\neye = [0, -5, 0]\nlook_at = [0, 0, 0]\n");
+    for (entry, place) in [
+        ("[\"a.bpt\"]", "s.toml:1:13"),
+        ("{ sphere = [1.0, 6, true, \"anything\"] }", "s.toml:1:24"),
+        ("{ torus = [1, 0.3, 0.3, 4, 4, 0, true] }", "s.toml:1:23"),
+        ("{ cylinder = [1, 2] }", "s.toml:1:26"),
+        ("{ file = \"a.bpt\", transform = [[[1, 0, 0]]] }", "s.toml:1:44"),
+        ("{ file = \"a.bpt\", transform = [{ rotate = [[1, 0, 0], 30] }] }", "s.toml:1:55"),
+    ] {
+        refused(&surfaces(entry), place, table);
+    }
+    helped_after(
+        "[materials]\nred = { metal = { gold = [] } }\n",
+        "s.toml:6:17",
+        "invalid type: table, expected one of `aluminium`",
+        "write one of \"aluminium\", \"copper\", \"gold\", \"silver\"",
+    );
+    for (lines, place, help) in [
+        ("[[image]]\nsize = [9, 9]\n", "s.toml:5:1", "write `[image]`"),
+        ("[[trace]]\n", "s.toml:5:1", "write `[trace]`"),
+        ("[[trace.limits]]\n", "s.toml:5:1", "write `[trace.limits]`"),
+        ("[[light]]\n", "s.toml:5:1", "write `[light]` for one light, `[[lights]]` for each of several"),
+        ("[[material]]\n", "s.toml:5:1", "write `[material]` for what names none, `[materials.NAME]`"),
+        ("[[materials]]\n", "s.toml:5:1", "write `[materials.NAME]` for one with a name, `[material]`"),
+        ("[[materials.a]]\n", "s.toml:5:1", "write `[materials.NAME]` for one with a name, `[material]`"),
+        (
+            "[materials]\ncolour = [1, 0, 0]\n",
+            "s.toml:6:10",
+            "write `[materials.NAME]` for one with a name, `[material]`",
+        ),
+        ("[groups]\nsurfaces = []\n", "s.toml:6:12", "write `[groups.NAME]` for each group"),
+        ("[[groups.a]]\n", "s.toml:5:1", "write `[groups.NAME]` for each group"),
+    ] {
+        helped_after(lines, place, "invalid type: list, expected a table", help);
+    }
+    helped_after(
+        "[lights]\n",
+        "s.toml:5:1",
+        "expected a list in brackets",
+        "write `[[lights]]` for each light, or `[light]`",
+    );
+    helped_after("[polygons]\n", "s.toml:5:1", "expected a list in brackets", "write `[[polygons]]`");
+    refused("surfaces = []\ncamera = [[0, -5, 1], [0, 1, 0]]\n", "s.toml:2:10", table);
+    let report = rendered(&parse("s.toml", "image = [[64, 64], \"jittered\", 1]\n").expect_err("refused"));
+    assert!(report.contains("help: write a table `{ name = value }` of size, samples"), "{report}");
+}
+
+#[test]
+fn choices_are_told_whatever_stands_in_their_place() {
+    for (lines, place, message, help) in [
+        ("[image]\nsamples = 4\n", "s.toml:6:11", "integer `4`, expected one of", "\"one\", \"uniform\", \"jittered\""),
+        ("[image]\nsamples = { jittered = {} }\n", "s.toml:6:11", "type: table, expected", "\"one\", \"uniform\""),
+        ("[image]\nsamples = [\"one\"]\n", "s.toml:6:11", "type: list, expected one of", "\"one\", \"uniform\""),
+        ("[light]\nshadow = true\n", "s.toml:6:10", "boolean `true`, expected one of", "\"none\", \"rays\", \"map\""),
+        ("[trace]\nmethod = 3\n", "s.toml:6:10", "integer `3`, expected one of", "\"newton\", \"newton-coherent\""),
+        ("[material]\nmetal = 1\n", "s.toml:6:9", "integer `1`, expected one of", "\"aluminium\", \"copper\""),
+    ] {
+        helped_after(lines, place, message, &format!("write one of {help}"));
+    }
+}
+
 #[test]
 fn cameras() {
     camera_refused("look_at = [0, 0, 0]\n", "s.toml:2:1", "the camera lacks `eye`");
