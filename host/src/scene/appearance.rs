@@ -115,7 +115,7 @@ pub(super) const BACKGROUND: [f64; 3] = [1.0; 3];
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ImageTable {
-    size: Option<Spanned<Vec<u32>>>,
+    size: Option<Spanned<Vec<i128>>>,
     samples: Option<Sampling>,
 }
 
@@ -125,10 +125,9 @@ impl ImageTable {
         let Some(size) = &self.size else {
             return Ok(Image { samples, ..Image::default() });
         };
-        match size.get_ref()[..] {
-            [width, height] if [width, height].iter().all(|side| (1..=MAX_SIDE).contains(side)) => {
-                Ok(Image { size: [width, height], samples })
-            }
+        let side = |side: i128| u32::try_from(side).ok().filter(|side| (1..=MAX_SIDE).contains(side));
+        match size.get_ref().iter().map(|&given| side(given)).collect::<Vec<_>>()[..] {
+            [Some(width), Some(height)] => Ok(Image { size: [width, height], samples }),
             _ => Err(check.source.refuse(
                 size.span(),
                 "this is not the size of an image",

@@ -1,4 +1,6 @@
 //! Checks that scene files have in common: numbers in range, in lists of the right length.
+use std::ops::RangeInclusive;
+
 use toml::Spanned;
 
 use super::error::InputError;
@@ -96,11 +98,23 @@ impl Check<'_> {
         Err(self.source.refuse(number.span(), format!("{what} is {value}"), "out of range", help))
     }
 
-    /// A whole number of at least 1.
-    pub(super) fn count(&self, what: &str, number: &Spanned<u32>) -> Result<u32, InputError> {
-        match *number.get_ref() {
-            0 => Err(self.source.refuse(number.span(), format!("{what} is 0"), "too few", "write at least 1")),
-            count => Ok(count),
+    /// A whole number in `range`. It is read as one of far more digits, so that whatever is written is told this range.
+    pub(super) fn whole(
+        &self,
+        what: &str,
+        number: &Spanned<i128>,
+        range: RangeInclusive<u32>,
+    ) -> Result<u32, InputError> {
+        let value = *number.get_ref();
+        let (least, most) = (*range.start(), *range.end());
+        match u32::try_from(value) {
+            Ok(whole) if range.contains(&whole) => Ok(whole),
+            _ => Err(self.source.refuse(
+                number.span(),
+                format!("{what} is {value}"),
+                if value < least.into() { "too small" } else { "too large" },
+                format!("write a whole number from {least} to {most}"),
+            )),
         }
     }
 }

@@ -85,8 +85,8 @@ pub(super) struct TorusTable {
     major: Spanned<f64>,
     minor: Spanned<f64>,
     height: Option<Spanned<f64>>,
-    around: Option<Spanned<u32>>,
-    across: Option<Spanned<u32>>,
+    around: Option<Spanned<i128>>,
+    across: Option<Spanned<i128>>,
     seam: Option<Spanned<f64>>,
     #[serde(default)]
     exact: bool,
@@ -97,7 +97,7 @@ pub(super) struct TorusTable {
 #[serde(deny_unknown_fields)]
 pub(super) struct SphereTable {
     radius: Spanned<f64>,
-    around: Option<Spanned<u32>>,
+    around: Option<Spanned<i128>>,
     #[serde(default)]
     exact: bool,
 }
@@ -109,38 +109,30 @@ pub(super) struct CylinderTable {
     radius: Spanned<f64>,
     height: Spanned<f64>,
     arc: Option<Spanned<Vec<f64>>>,
-    around: Option<Spanned<u32>>,
+    around: Option<Spanned<i128>>,
     #[serde(default)]
     exact: bool,
 }
 
 /// The surfaces into which a whole circle is divided where a file does not say: each a quarter of it.
-const QUARTERS: usize = 4;
+const QUARTERS: u32 = 4;
 
 fn kind(exact: bool) -> Arcs {
     if exact { Arcs::Rational } else { Arcs::Polynomial }
 }
 
 /// The number of arcs of `sweep` degrees; see [`Arcs`] for how long one may be.
-fn arcs(name: &str, given: &Option<Spanned<u32>>, sweep: f64, kind: Arcs, check: &Check) -> Result<usize, InputError> {
-    let enough = |count: usize| match kind {
-        Arcs::Rational => sweep < 180.0 * count as f64,
-        Arcs::Polynomial => sweep <= 180.0 * count as f64,
+fn arcs(name: &str, given: &Option<Spanned<i128>>, sweep: f64, kind: Arcs, check: &Check) -> Result<usize, InputError> {
+    let enough = |count: u32| match kind {
+        Arcs::Rational => sweep < 180.0 * f64::from(count),
+        Arcs::Polynomial => sweep <= 180.0 * f64::from(count),
     };
     let Some(count) = given else {
-        return Ok(QUARTERS);
+        return Ok(QUARTERS as usize);
     };
-    if (1..=MAX_ARCS).contains(count.get_ref()) && enough(*count.get_ref() as usize) {
-        return Ok(*count.get_ref() as usize);
-    }
-    // Enough for every sweep, as it is at most a whole circle.
+    // Quarters are enough for every sweep, as it is at most a whole circle.
     let least = (1..QUARTERS).find(|&count| enough(count)).unwrap_or(QUARTERS);
-    Err(check.source.refuse(
-        count.span(),
-        format!("{name} is {}", count.get_ref()),
-        if *count.get_ref() > MAX_ARCS { "too many" } else { "too few for such long arcs" },
-        format!("write a whole number from {least} to {MAX_ARCS}"),
-    ))
+    Ok(check.whole(name, count, least..=MAX_ARCS)? as usize)
 }
 
 impl TorusTable {

@@ -72,7 +72,7 @@ pub(super) struct LightTable {
     position: Option<Spanned<Vec<f64>>>,
     colour: Option<Spanned<Vec<f64>>>,
     shadow: Option<ShadowKind>,
-    map_size: Option<Spanned<u32>>,
+    map_size: Option<Spanned<i128>>,
     map_bias: Option<Spanned<f64>>,
 }
 
@@ -98,15 +98,7 @@ impl LightTable {
     fn map(&self, check: &Check) -> Result<MapOptions, InputError> {
         let mut map = MapOptions::default();
         if let Some(size) = &self.map_size {
-            map.size = *size.get_ref();
-            if !(1..=MAX_MAP_SIDE).contains(&map.size) {
-                return Err(check.source.refuse(
-                    size.span(),
-                    format!("`map_size` is {}", map.size),
-                    "out of range",
-                    format!("write a whole number from 1 to {MAX_MAP_SIDE}"),
-                ));
-            }
+            map.size = check.whole("`map_size`", size, 1..=MAX_MAP_SIDE)?;
         }
         if let Some(bias) = &self.map_bias {
             map.bias = check.amount("`map_bias`", bias)?;

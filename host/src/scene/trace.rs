@@ -165,30 +165,21 @@ pub(super) struct TraceTable {
     method: Option<Method>,
     precision: Option<Precision>,
     acceptance: Option<Acceptance>,
-    newton_iterations: Option<Spanned<u32>>,
-    newton_starts: Option<Spanned<u32>>,
+    newton_iterations: Option<Spanned<i128>>,
+    newton_starts: Option<Spanned<i128>>,
     clip_threshold: Option<Spanned<f64>>,
     tolerance: Option<Spanned<f64>>,
     flatness: Option<Spanned<f64>>,
     grid_density: Option<Spanned<f64>>,
-    threads: Option<Spanned<u32>>,
+    threads: Option<Spanned<i128>>,
     #[serde(default)]
     limits: BTreeMap<Spanned<String>, u64>,
 }
 
 impl TraceTable {
     pub(super) fn check(self, check: &Check) -> Result<TraceSettings, InputError> {
-        let count = |name: &str, number: &Option<Spanned<u32>>| {
-            number.as_ref().map(|number| check.count(name, number)).transpose()
-        };
-        let at_most = |name: &str, number: &Option<Spanned<u32>>, most: u32| match number {
-            Some(given) if *given.get_ref() > most => Err(check.source.refuse(
-                given.span(),
-                format!("{name} is {}", given.get_ref()),
-                "too many",
-                format!("write a whole number from 1 to {most}"),
-            )),
-            _ => count(name, number),
+        let at_most = |name: &str, number: &Option<Spanned<i128>>, most: u32| {
+            number.as_ref().map(|number| check.whole(name, number, 1..=most)).transpose()
         };
         let positive = |name: &str, number: &Option<Spanned<f64>>| {
             number.as_ref().map(|number| check.positive(name, number)).transpose()
@@ -197,7 +188,7 @@ impl TraceTable {
             method: self.method,
             precision: self.precision,
             acceptance: self.acceptance,
-            newton_iterations: count("`newton_iterations`", &self.newton_iterations)?,
+            newton_iterations: at_most("`newton_iterations`", &self.newton_iterations, u32::MAX)?,
             newton_starts: at_most("`newton_starts`", &self.newton_starts, MAX_NEWTON_STARTS)?,
             clip_threshold: self
                 .clip_threshold

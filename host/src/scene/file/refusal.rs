@@ -34,7 +34,7 @@ fn quoted(message: &str) -> Vec<&str> {
     message.split('`').skip(1).step_by(2).collect()
 }
 
-/// A reader's refusal of a value, such as "invalid type: string "big", expected u32", without names of this program's types;
+/// A reader's refusal of a value, such as "invalid type: string "big", expected f64", without names of this program's types;
 /// and what to write instead.
 fn wrong_value(source: &SourceText, span: &Range<usize>, message: &str) -> (String, String) {
     let Some((found, expected)) = message.rsplit_once(", expected ") else {
@@ -48,7 +48,7 @@ fn wrong_value(source: &SourceText, span: &Range<usize>, message: &str) -> (Stri
     let correct = "correct this value".to_owned();
     let (expected, help) = match expected {
         "u64" => ("a whole number, 0 or more", correct),
-        "u32" => ("a whole number, 0 or more", correct),
+        "i128" => ("a whole number", correct),
         "f64" => ("a number", correct),
         "a sequence" => ("a list in brackets", form(source, span, true).unwrap_or(correct)),
         "a map" => ("a table for each name", form(source, span, false).unwrap_or(correct)),

@@ -1,5 +1,6 @@
 use std::fs;
 
+use patchray::limits::MAX_NEWTON_STARTS;
 use proptest::prelude::*;
 
 use super::super::contents::What;
@@ -71,7 +72,6 @@ fn wrong_types() {
     refused_after("fov = \"wide\"\n", "s.toml:5:7", "invalid type: string \"wide\", expected a number");
     refused_after("[image]\nsize = \"big\"\n", "s.toml:6:8", "expected a list in brackets");
     refused_after("[materials]\nred = 5\n", "s.toml:6:7", "expected a table, such as");
-    refused_after("[image]\nsize = [-1, 5]\n", "s.toml:6:9", "invalid value: integer `-1`, expected a whole number");
     refused_after(
         "[trace.limits]\nvoxels = 1.5\n",
         "s.toml:6:10",
@@ -189,13 +189,16 @@ fn values_out_of_range() {
     refused(&format!("background = [0, 0, 2]\n{LEAST}"), "s.toml:1:14", "`background` is not a colour");
     refused_after("[image]\nsize = [0, 5]\n", "s.toml:6:8", "not the size of an image");
     refused_after("[image]\nsize = [5]\n", "s.toml:6:8", "not the size of an image");
-    refused_after("[image]\nsize = [5, 40000]\n", "s.toml:6:8", "not the size of an image");
+    for size in ["[5, 40000]", "[-1, 5]", "[1000000000000, 5]"] {
+        refused_after(&format!("[image]\nsize = {size}\n"), "s.toml:6:8", "not the size of an image");
+    }
     refused_after("[light]\nposition = [1, 2]\n", "s.toml:6:12", "`position` of the light has 2 numbers");
     refused_after("[light]\ncolour = [1, 2, -3]\n", "s.toml:6:10", "`colour` of the light is not a colour");
     let map = "[light]\nshadow = \"map\"\n";
     for (line, place, message) in [
         ("map_size = 0", "s.toml:7:12", "`map_size` is 0"),
         ("map_size = 8193", "s.toml:7:12", "`map_size` is 8193"),
+        ("map_size = -1", "s.toml:7:12", "`map_size` is -1"),
         ("map_size = 0.5", "s.toml:7:12", "invalid type: floating point `0.5`, expected a whole number"),
         ("map_bias = -1", "s.toml:7:12", "`map_bias` is -1"),
         ("map_bias = inf", "s.toml:7:12", "`map_bias` is inf"),
@@ -205,8 +208,17 @@ fn values_out_of_range() {
     }
     refused_after("[material]\nambient = -0.5\n", "s.toml:6:11", "`ambient` is -0.5");
     refused_after("[material]\nshininess = 0\n", "s.toml:6:13", "`shininess` is 0");
-    refused_after("[trace]\nnewton_starts = 0\n", "s.toml:6:17", "`newton_starts` is 0");
-    refused_after("[trace]\nthreads = 0\n", "s.toml:6:11", "`threads` is 0");
+    for (field, range) in [
+        ("newton_iterations", "1 to 4294967295"),
+        ("newton_starts", &format!("1 to {MAX_NEWTON_STARTS}")),
+        ("threads", "1 to 1024"),
+    ] {
+        for count in ["0", "-4", "1000000000000", "10000000000000000000"] {
+            let place = format!("s.toml:6:{}", field.len() + 4);
+            let help = format!("write a whole number from {range}");
+            helped_after(&format!("[trace]\n{field} = {count}\n"), &place, &format!("`{field}` is {count}"), &help);
+        }
+    }
     refused_after("[trace]\nclip_threshold = 1.0\n", "s.toml:6:18", "`clip_threshold` is 1");
     refused_after("[trace]\nflatness = inf\n", "s.toml:6:12", "`flatness` is inf");
     refused_after("[trace]\ngrid_density = 0.0\n", "s.toml:6:16", "`grid_density` is 0");

@@ -196,6 +196,12 @@ fn measures_out_of_range() {
     scene_refused(&torus("minor = 1, around = 1"), "s.toml:1:56", "`around` is 1");
     scene_refused(&torus("minor = 1, across = 2, exact = true"), "s.toml:1:56", "`across` is 2");
     scene_refused(&torus("minor = 1, across = 100000"), "s.toml:1:56", "`across` is 100000");
+    for count in ["-4", "1001", "1000000000000"] {
+        let text = format!("{}\n{CAMERA}", torus(&format!("minor = 1, around = {count}")));
+        refused(&text, "s.toml:1:56", &format!("`around` is {count}"));
+        let report = rendered(&parse("s.toml", &text).expect_err("refused"));
+        assert!(report.contains("help: write a whole number from 2 to 1000"), "{report}");
+    }
     scene_refused(&torus("minor = 1, seam = nan"), "s.toml:1:54", "`seam` is NaN");
     let wall = |arc: &str| format!("surfaces = [{{ cylinder = {{ radius = 2, height = 1, arc = {arc} }} }}]");
     for arc in ["[0]", "[30, 30]", "[30, -30]", "[0, 361]", "[nan, 1]", "[0, inf]"] {
