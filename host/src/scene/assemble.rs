@@ -1,6 +1,7 @@
 //! From what a scene file says to surfaces and polygons in their places: files read, shapes made, groups used.
 use std::collections::HashMap;
 use std::collections::hash_map;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::contents::{Contents, Entry, What};
@@ -8,7 +9,7 @@ use super::error::InputError;
 use super::file::SceneFile;
 use super::model::{Model, ModelSurface};
 use super::patches::PatchFile;
-use super::polygon::Polygon;
+use super::polygon::{Fault, Polygon};
 use super::source::SourceText;
 use super::transform::Transform;
 
@@ -55,21 +56,32 @@ pub(super) fn assemble(
     fetch: impl FnMut(&Path) -> Result<(PathBuf, PatchFile), InputError>,
 ) -> Result<Assembled, InputError> {
     let mut assembler = Assembler { source, groups, fetch, read: HashMap::new(), placed: 0, out: Assembled::default() };
-    assembler.put(contents, Place { transform: Transform::IDENTITY, material: None })?;
+    assembler.put(contents, Place { transform: Transform::IDENTITY, material: None }, 0..0)?;
     Ok(assembler.out)
 }
 
 impl<F: FnMut(&Path) -> Result<(PathBuf, PatchFile), InputError>> Assembler<'_, F> {
-    /// Puts the contents in their place. Ends since groups do not hold themselves.
-    fn put(&mut self, contents: &Contents, place: Place) -> Result<(), InputError> {
+    /// Puts the contents, which the bytes `span` of the scene file ask for, in their place. Ends since groups do not hold
+    /// themselves.
+    fn put(&mut self, contents: &Contents, place: Place, span: Range<usize>) -> Result<(), InputError> {
         for (polygon, material) in &contents.polygons {
-            let material = material.or(place.material);
-            // One that its place makes too thin could not be seen either.
-            self.out.polygons.extend(polygon.transformed(&place.transform).map(|polygon| (polygon, material)));
+            match polygon.transformed(&place.transform) {
+                Ok(polygon) => self.out.polygons.push((polygon, material.or(place.material))),
+                Err(Fault::TooLarge) => {
+                    let message = "transforms make a polygon of this group too large";
+                    return Err(self.source.refuse(span, message, "this group", "write smaller numbers"));
+                }
+                // One that its place makes too thin could not be seen either.
+                Err(_) => {}
+            }
         }
         for entry in &contents.surfaces {
             let place =
                 Place { transform: entry.transform.then(place.transform), material: entry.material.or(place.material) };
+            if place.transform.collapses() {
+                let message = "the factors of `scale` of nested groups multiply to 0, which leaves nothing to see";
+                return Err(self.source.refuse(entry.span.clone(), message, "of this", "write larger factors"));
+            }
             match &entry.what {
                 What::File(file) => {
                     let (path, mut file) = self.file(file, entry)?;
@@ -93,7 +105,7 @@ impl<F: FnMut(&Path) -> Result<(PathBuf, PatchFile), InputError>> Assembler<'_, 
                             "use the groups less often",
                         ));
                     }
-                    self.put(group, place)?;
+                    self.put(group, place, entry.span.clone())?;
                 }
             }
         }

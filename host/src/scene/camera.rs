@@ -4,6 +4,7 @@ use toml::Spanned;
 
 use super::check::Check;
 use super::error::InputError;
+use super::polygon::length;
 use super::sampling::{self, Sampling, ScanLine};
 
 /// A camera as a scene file gives it, in one of two ways.
@@ -145,7 +146,7 @@ impl CameraTable {
             (None, None) => Err(missing("look_at")),
             (Some(_), None) => {
                 let vector = |name: &str, vector: &Option<Spanned<Vec<f64>>>| {
-                    check.triple(&format!("`{name}`"), vector.as_ref().ok_or_else(|| missing(name))?)
+                    check.vector(&format!("`{name}`"), vector.as_ref().ok_or_else(|| missing(name))?)
                 };
                 let forward = vector("forward", forward)?;
                 let (right, up) = (vector("right", right)?, vector("up", up)?);
@@ -163,7 +164,16 @@ impl CameraTable {
             (None, Some(_)) => {
                 let point = look_at.as_ref().ok_or_else(|| missing("look_at"))?;
                 let look_at = check.triple("`look_at`", point)?;
-                let forward = unit([0, 1, 2].map(|axis| look_at[axis] - eye[axis]));
+                let toward = [0, 1, 2].map(|axis| look_at[axis] - eye[axis]);
+                if !length(toward).is_finite() {
+                    return Err(check.source.refuse(
+                        point.span(),
+                        "the camera looks too far away",
+                        "more than 1.7e308 from `eye`",
+                        "write smaller numbers",
+                    ));
+                }
+                let forward = unit(toward);
                 // A direction that could not be found is NaN, which is not above anything.
                 let directed = dot(forward, forward) > 0.5;
                 if !directed {
@@ -174,7 +184,7 @@ impl CameraTable {
                         "move `eye` or `look_at`",
                     ));
                 }
-                let upward = up.as_ref().map_or(Ok([0.0, 0.0, 1.0]), |up| check.triple("`up`", up))?;
+                let upward = up.as_ref().map_or(Ok([0.0, 0.0, 1.0]), |up| check.vector("`up`", up))?;
                 let side = cross(forward, unit(upward));
                 let across = dot(side, side).sqrt() > FLAT;
                 if !across {
@@ -210,7 +220,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 /// The vector divided by its length; NaN for a zero vector.
 fn unit(vector: [f64; 3]) -> [f64; 3] {
-    let length = vector[0].hypot(vector[1]).hypot(vector[2]);
+    let length = length(vector);
     vector.map(|x| x / length)
 }
 

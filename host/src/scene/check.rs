@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 use toml::Spanned;
 
 use super::error::InputError;
+use super::polygon::length;
 use super::source::SourceText;
 
 /// Checks values against the text that they come from, which errors show.
@@ -32,6 +33,16 @@ impl Check<'_> {
             "not finite",
             "write three finite numbers",
         ))
+    }
+
+    /// Three finite numbers whose length is finite too.
+    pub(super) fn vector(&self, what: &str, list: &Spanned<Vec<f64>>) -> Result<[f64; 3], InputError> {
+        let vector = self.triple(what, list)?;
+        if length(vector).is_finite() {
+            return Ok(vector);
+        }
+        let help = "write smaller numbers";
+        Err(self.source.refuse(list.span(), format!("{what} is too long"), "longer than 1.7e308", help))
     }
 
     /// Red, green and blue, each 0 to 1.

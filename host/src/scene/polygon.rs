@@ -23,6 +23,8 @@ const FLAT: f64 = 1e-6;
 pub enum Fault {
     /// Fewer than three.
     TooFew,
+    /// So far apart that squares of lengths are not finite.
+    TooLarge,
     /// All on one line, or almost; or edges that cross so that as much is turned left as right.
     Thin,
     /// One is off the plane of the others.
@@ -48,7 +50,10 @@ impl Polygon {
             perimeter += length(subtract(b, a));
         }
         let size = length(area);
-        if !(size > FLAT * perimeter * perimeter && size.is_finite()) {
+        if !(size.is_finite() && (perimeter * perimeter).is_finite()) {
+            return Err(Fault::TooLarge);
+        }
+        if size <= FLAT * perimeter * perimeter {
             return Err(Fault::Thin);
         }
         let normal = area.map(|x| x / size);
@@ -62,9 +67,12 @@ impl Polygon {
         if polygon.crosses_itself() { Err(Fault::Crossing) } else { Ok(polygon) }
     }
 
-    /// The polygon moved; `None` if that makes it too thin.
-    pub fn transformed(&self, transform: &Transform) -> Option<Self> {
-        Self::new(self.vertices.iter().map(|&vertex| transform.point(vertex)).collect()).ok()
+    /// The polygon moved.
+    ///
+    /// # Errors
+    /// That makes it too thin or too large.
+    pub fn transformed(&self, transform: &Transform) -> Result<Self, Fault> {
+        Self::new(self.vertices.iter().map(|&vertex| transform.point(vertex)).collect())
     }
 
     /// The unit normal; which of the two depends on the order of the vertices.
@@ -151,7 +159,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn length(a: [f64; 3]) -> f64 {
+pub(super) fn length(a: [f64; 3]) -> f64 {
     a[0].hypot(a[1]).hypot(a[2])
 }
 
@@ -170,6 +178,7 @@ impl PolygonTable {
         Polygon::new(vertices).map_err(|fault| {
             let (message, help) = match fault {
                 Fault::TooFew => ("a polygon has at least three vertices", "add the missing ones"),
+                Fault::TooLarge => ("this polygon is too large", "write smaller numbers"),
                 Fault::Thin => (
                     "this polygon has no area",
                     "write the vertices in their order around it, and not all of them on one line",
@@ -227,6 +236,7 @@ mod tests {
         assert_eq!(flat(&[[0., 0.], [1., 0.]]), Err(Fault::TooFew));
         assert_eq!(flat(&[[0., 0.], [1., 1.], [2., 2.], [3., 3.]]), Err(Fault::Thin));
         assert_eq!(flat(&[[1., 1.]; 4]), Err(Fault::Thin));
+        assert_eq!(flat(&[[0., 0.], [1e200, 0.], [0., 1e200]]), Err(Fault::TooLarge));
         // A bow tie whose halves are not alike, a vertex on an edge, and an edge that runs back along another.
         assert_eq!(flat(&[[0., 0.], [3., 3.], [3., 0.], [0., 1.]]), Err(Fault::Crossing));
         assert_eq!(flat(&[[0., 0.], [4., 0.], [4., 4.], [2., 0.], [0., 4.]]), Err(Fault::Crossing));

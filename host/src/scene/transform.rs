@@ -4,6 +4,7 @@ use toml::{Spanned, Value};
 
 use super::check::Check;
 use super::error::InputError;
+use super::polygon::length;
 
 /// An affine map of points. It is applied to every point alike, so that points with the same bits keep the same bits: where
 /// surfaces join, they still do.
@@ -36,7 +37,7 @@ impl Transform {
     ///
     /// Source: O. Rodrigues' formula, `cos θ I + sin θ [a]ₓ + (1 − cos θ) a aᵀ` for a unit axis a.
     pub fn rotation(axis: [f64; 3], degrees: f64) -> Self {
-        let length = axis[0].hypot(axis[1]).hypot(axis[2]);
+        let length = length(axis);
         let a = axis.map(|x| x / length);
         let [cos, sin] = cos_sin(degrees);
         let cross = [[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]];
@@ -67,6 +68,14 @@ impl Transform {
     /// Whether every number in it is finite.
     fn is_finite(&self) -> bool {
         self.map.is_none_or(|(rows, by)| rows.iter().flatten().chain(&by).all(|x| x.is_finite()))
+    }
+
+    /// Whether a direction is lost, as by a scaling by 0. Of steps that lose none, the product does where it is too small for
+    /// a number.
+    pub(super) fn collapses(&self) -> bool {
+        self.map.is_some_and(|(rows, _)| {
+            rows.contains(&[0.0; 3]) || (0..3).any(|column| rows.iter().all(|row| row[column] == 0.0))
+        })
     }
 }
 
@@ -113,6 +122,10 @@ pub(super) fn check(steps: &[Spanned<StepTable>], check: &Check) -> Result<Trans
             let help = "write smaller numbers";
             return Err(check.source.refuse(step.span(), "the transform moves points to infinity", "up to here", help));
         }
+        if all.collapses() {
+            let message = "the factors of `scale` multiply to 0, which leaves nothing to see";
+            return Err(check.source.refuse(step.span(), message, "up to here", "write larger factors"));
+        }
     }
     Ok(all)
 }
@@ -123,9 +136,8 @@ fn check_step(step: &Spanned<StepTable>, check: &Check) -> Result<Transform, Inp
             Ok(Transform::translation(check.triple("`translate`", by)?))
         }
         StepTable { translate: None, rotate: Some(RotationTable { axis, degrees }), scale: None } => {
-            let direction = check.triple("`axis`", axis)?;
-            let length = direction[0].hypot(direction[1]).hypot(direction[2]);
-            if !(length > 0.0 && length.is_finite()) {
+            let direction = check.vector("`axis`", axis)?;
+            if direction == [0.0; 3] {
                 let help = "write the direction about which to turn, such as `axis = [0, 0, 1]`";
                 return Err(check.source.refuse(axis.span(), "the axis of a rotation has no direction", "zero", help));
             }

@@ -166,6 +166,14 @@ fn cameras() {
     camera_refused("eye = [0, 0, 0, 0]\nlook_at = [1, 0, 0]\n", "s.toml:3:7", "`eye` has 4 numbers");
     camera_refused("eye = [0, nan, 0]\nlook_at = [1, 0, 0]\n", "s.toml:3:7", "`eye` holds NaN");
     camera_refused("eye = [1, 0, 0]\nlook_at = [1, 0, 0]\n", "s.toml:4:11", "looks at the point where it is");
+    for far in ["[0, -1e308, 0]", "[-1e308, -1e308, -1e308]"] {
+        let text = format!("eye = {far}\nlook_at = [1e308, 1e308, 1e308]\n");
+        camera_refused(&text, "s.toml:4:11", "the camera looks too far away");
+    }
+    let long = "[1.5e308, 1.5e308, 0]";
+    camera_refused(&format!("eye = [1, 0, 0]\nlook_at = [0, 0, 0]\nup = {long}\n"), "s.toml:5:6", "`up` is too long");
+    let forward = format!("eye = [0, 0, 0]\nforward = {long}\nright = [1, 0, 0]\nup = [0, 0, 1]\n");
+    camera_refused(&forward, "s.toml:4:11", "`forward` is too long");
     camera_refused("eye = [0, 0, 9]\nlook_at = [0, 0, 0]\n", "s.toml:4:11", "looks straight along `up`");
     let up = "eye = [0, 0, 9]\nlook_at = [0, 9, 0]\nup = [0, 0, 0]\n";
     camera_refused(up, "s.toml:5:6", "looks straight along `up`, or `up` is zero");

@@ -226,6 +226,25 @@ fn transforms_that_leave_nothing() {
     scene_refused(&with("{ scale = 1, translate = [0, 0, 1] }"), "s.toml:1:64", "is one of");
     scene_refused(&with("{ scale = 1e200 }, { scale = 1e200 }"), "s.toml:1:83", "moves points to infinity");
     scene_refused(&with("{ scale = 1e308 }"), "s.toml:1:23", "move these surfaces to infinity");
+    let axis = "{ rotate = { axis = [1.5e308, 1.5e308, 0], degrees = 9 } }";
+    scene_refused(&with(axis), "s.toml:1:84", "`axis` is too long");
+    for small in ["1e-200", "[1, 1e-200, 1]"] {
+        let twice =
+            format!("{{ scale = {small} }}, {{ rotate = {{ axis = [0, 1, 0], degrees = 9 }} }}, {{ scale = {small} }}");
+        let last = 64 + twice.rfind("{ scale").expect("it is there");
+        scene_refused(&with(&twice), &format!("s.toml:1:{last}"), "multiply to 0, which leaves nothing to see");
+    }
+    let nested = |inside: &str, scale: &str| {
+        format!(
+            "surfaces = [{{ group = \"a\", transform = [{{ scale = {scale} }}] }}]\n\
+             [groups.a]\nsurfaces = [{{ group = \"b\", transform = [{{ scale = {scale} }}] }}]\n[groups.b]\n{inside}"
+        )
+    };
+    let triangle = "polygons = [{ vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]] }]";
+    for inside in [&format!("surfaces = [{{ {TORUS} }}]"), triangle] {
+        scene_refused(&nested(inside, "1e-200"), "s.toml:3:23", "of nested groups multiply to 0");
+    }
+    scene_refused(&nested(triangle, "1e100"), "s.toml:3:23", "transforms make a polygon of this group too large");
 }
 
 #[test]
@@ -233,6 +252,7 @@ fn polygons_that_are_none() {
     let with = |vertices: &str| format!("polygons = [{{ vertices = {vertices} }}]\nsurfaces = [{{ {TORUS} }}]");
     scene_refused(&with("[[0, 0, 0], [1, 0, 0]]"), "s.toml:1:26", "a polygon has at least three vertices");
     scene_refused(&with("[[0, 0, 0], [1, 1, 1], [2, 2, 2]]"), "s.toml:1:26", "has no area");
+    scene_refused(&with("[[-1e200, 0, 0], [1e200, 0, 0], [0, 1e200, 0]]"), "s.toml:1:26", "polygon is too large");
     scene_refused(&with("[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 1]]"), "s.toml:1:26", "not lie in one plane");
     scene_refused(&with("[[0, 0, 0], [3, 3, 0], [3, 0, 0], [0, 1, 0]]"), "s.toml:1:26", "cross or touch");
     scene_refused(&with("[[0, 0, 0], [1, 0], [0, 1, 0]]"), "s.toml:1:38", "a vertex has 2 numbers");
