@@ -57,6 +57,14 @@ pub(super) fn assemble(
 ) -> Result<Assembled, InputError> {
     let mut assembler = Assembler { source, groups, fetch, read: HashMap::new(), placed: 0, out: Assembled::default() };
     assembler.put(contents, Place { transform: Transform::IDENTITY, material: None }, 0..0)?;
+    // What is wrong is told also of a file that only unused groups name.
+    for entry in groups.iter().flat_map(|group| &group.surfaces) {
+        if let What::File(file) = &entry.what
+            && !assembler.read.contains_key(file)
+        {
+            assembler.file(file, entry)?;
+        }
+    }
     Ok(assembler.out)
 }
 

@@ -265,6 +265,10 @@ fn files_are_joined_and_refused_by_place() {
 
     fs::write(&path, format!("surfaces = [{{ file = \"gone.bpt\" }}]\n{camera}")).expect("written");
     assert_refused(read(&path, OnInvalid::Refuse), &format!("{}:1:22", path.display()), "cannot read `");
+
+    let unused = "[groups.unused]\nsurfaces = [{ file = \"sub/one.bpt\" }, { file = \"gone.bpt\" }]\n";
+    fs::write(&path, format!("surfaces = [{{ sphere = {{ radius = 1 }} }}]\n{camera}{unused}")).expect("written");
+    assert_refused(read(&path, OnInvalid::Refuse), &format!("{}:6:48", path.display()), "cannot read `");
 }
 
 proptest! {
