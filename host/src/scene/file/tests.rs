@@ -227,6 +227,8 @@ fn values_out_of_range() {
             helped_after(&format!("[trace]\n{field} = {count}\n"), &place, &format!("`{field}` is {count}"), &help);
         }
     }
+    let digits = "9".repeat(50);
+    helped_after(&format!("[trace]\nthreads = {digits}\n"), "s.toml:6:11", "overflowed", "write a smaller number");
     refused_after("[trace]\nclip_threshold = 1.0\n", "s.toml:6:18", "`clip_threshold` is 1");
     refused_after("[trace]\nflatness = inf\n", "s.toml:6:12", "`flatness` is inf");
     refused_after("[trace]\ngrid_density = 0.0\n", "s.toml:6:16", "`grid_density` is 0");
