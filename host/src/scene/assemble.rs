@@ -17,6 +17,9 @@ use super::transform::Transform;
 /// for more than there is memory for.
 const MAX_PLACED: usize = 1 << 16;
 
+/// The most surfaces of a scene: of bicubics some 700 MB before anything is traced. A torus of the most surfaces fits.
+const MAX_SURFACES: usize = 1 << 20;
+
 /// Surfaces and polygons in the scene's units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Assembled {
@@ -93,11 +96,13 @@ impl<F: FnMut(&Path) -> Result<(PathBuf, PatchFile), InputError>> Assembler<'_, 
             match &entry.what {
                 What::File(file) => {
                     let (path, mut file) = self.file(file, entry)?;
+                    self.make_room(file.model.surfaces.len(), entry)?;
                     let surfaces = std::mem::take(&mut file.model.surfaces);
                     self.add(path, surfaces, file, place, entry)?;
                 }
                 What::Shape(shape) => {
                     let path = PathBuf::from(self.source.name());
+                    self.make_room(shape.count(), entry)?;
                     self.add(path, shape.surfaces(), PatchFile::default(), place, entry)?;
                 }
                 What::Group(group) => {
@@ -140,6 +145,16 @@ impl<F: FnMut(&Path) -> Result<(PathBuf, PatchFile), InputError>> Assembler<'_, 
                 Ok(new.insert(read).clone())
             }
         }
+    }
+
+    /// Refuses an entry that would bring more surfaces than a scene may have, before they are made.
+    fn make_room(&self, surfaces: usize, entry: &Entry) -> Result<(), InputError> {
+        if self.out.model.surfaces.len() + surfaces <= MAX_SURFACES {
+            return Ok(());
+        }
+        let message = format!("the scene has more than {MAX_SURFACES} surfaces");
+        let help = "ask for fewer around and across, or use groups less often";
+        Err(self.source.refuse(entry.span.clone(), message, "more than that with these", help))
     }
 
     fn add(

@@ -58,6 +58,15 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// How many surfaces there will be.
+    pub fn count(&self) -> usize {
+        match *self {
+            Self::Torus { around, across, .. } => around * across,
+            Self::Sphere { around, .. } => 2 * around,
+            Self::Cylinder { around, .. } => around,
+        }
+    }
+
     /// The surfaces. Neighbours share the bits of their common control points.
     pub fn surfaces(&self) -> Vec<ModelSurface> {
         let circle = |arcs: Arcs, count: usize| Curve::circle(arcs, 0.0, 360.0, count);

@@ -1,4 +1,5 @@
 //! The refusal of what is no TOML, or TOML of other kinds of values than a scene has, in the words of scene files.
+
 use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};

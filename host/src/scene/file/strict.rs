@@ -2,6 +2,7 @@
 //!
 //! What is derived for a table also takes a list, value by value without names, and drops without a word what is too many in
 //! it; what is derived for a choice also takes a table. [`from_str`] reads as the derived code does, and refuses both.
+
 use std::fmt;
 
 use serde::de::{Deserialize, DeserializeSeed, Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Visitor};

@@ -179,6 +179,14 @@ fn groups_that_cannot_be_built() {
     scene_refused(&doubled, "s.toml:41:42", "groups put more than 65536 things into the scene");
 }
 
+/// A dozen lines once asked for more surfaces than there is memory for, and ended without a word.
+#[test]
+fn a_scene_has_so_many_surfaces_and_no_more() {
+    let torus = |around| format!("{{ torus = {{ major = 2, minor = 0.5, around = {around}, across = 1000 }} }}");
+    let text = format!("surfaces = [{}, {}]", torus(50), torus(1000));
+    scene_refused(&text, "s.toml:1:91", "the scene has more than 1048576 surfaces");
+}
+
 #[test]
 fn an_entry_is_one_thing() {
     scene_refused(
