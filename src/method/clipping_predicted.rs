@@ -103,7 +103,8 @@ fn closest_so_far<P: Point>(
     work: &mut Work,
 ) -> Result<(), Limit> {
     let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(ray.place, stamp));
-    let mut search = Search { view, ray, limits, nearby, room, projected: None, decided: None };
+    let mut search =
+        Search { view, ray, limits, nearby, room, projected: None, decided: None, claim: None, contested: false };
     let mut resumed = false;
     let start = start.filter(|_| search.nearby.holds_surface(last));
     if let (Some(start), Some(slot)) = (start, memory.slots.get_mut(last as usize)) {
@@ -142,6 +143,9 @@ struct Search<'a, 's, 'm, P: Point> {
     projected: Option<u32>,
     /// The surface of which all was clipped that the ray may meet.
     decided: Option<u32>,
+    /// The root that memory led to, while it is judged, and whether it is contested.
+    claim: Option<Claim<P::Scalar>>,
+    contested: bool,
 }
 
 impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
@@ -179,7 +183,9 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         let alone = Alone::new(&point, &local, of_window.bend);
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
-        let (mut verified, mut claim) = (true, Claim::of(&point, surface, limits));
+        let claim = Claim::of(&point, surface, limits);
+        self.claim = Some(claim);
+        let mut verified = true;
         let up_to = claim.up_to(best.as_ref());
         nearby.visit(&ray.planes, up_to, limits, work, exempt, |number, patch, crossing, work| {
             let farthest = claim.up_to(best.as_ref());
@@ -194,11 +200,11 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
                 return Ok(farthest);
             }
             verified = false;
-            self.clip(number, patch, best, Some(&mut claim), work)?;
-            Ok(claim.up_to(best.as_ref()))
+            self.clip(number, patch, best, work)?;
+            Ok(if self.contested { P::Scalar::LEAST } else { claim.up_to(best.as_ref()) })
         })?;
-        if claim.contested {
-            self.decided = None;
+        if self.contested {
+            (self.claim, self.decided) = (None, None);
             return Ok(false);
         }
         if verified {
@@ -225,7 +231,7 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
             |number, patch, crossing, work| {
                 let range = DepthRange { min: ray.range.min, max: best.map_or(ray.range.max, |best| best.root.depth) };
                 if crossing.overlaps(&range) {
-                    self.clip(number, patch, best, None, work)?;
+                    self.clip(number, patch, best, work)?;
                 }
                 Ok(best.map_or(ray.range.max, |best| best.root.depth))
             },
@@ -241,21 +247,20 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         number: u32,
         patch: &Patch<P::Scalar>,
         best: &mut Option<Best<P::Scalar>>,
-        mut claim: Option<&mut Claim<P::Scalar>>,
         work: &mut Work,
     ) -> Result<(), Limit> {
         if self.decided == Some(number) {
             return Ok(());
         }
         let (before, bisections) = (*best, work.bisections);
-        let grazing = self.clip_region(number, patch.domain().bounds(), best, claim.as_deref_mut(), work)?;
+        let grazing = self.clip_region(number, patch.domain().bounds(), best, work)?;
         let plain = !grazing && work.bisections == bisections;
         if let Some(decided) = self.decided {
             // Found in another region than the root before, it may be that of a surface that coincides: the first is named.
             if let (Some(old), Some(new)) = (before, &*best)
                 && old.surface == decided
                 && old.surface < new.surface
-                && Claim::of(&old.root, decided, self.limits).is_met_by(&new.root, new.surface)
+                && Claim::of(&old.root, decided, self.limits).is_contested_by(&new.root, new.surface)
             {
                 *best = before;
             }
@@ -273,7 +278,7 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         })?;
         self.decided = Some(number);
         *best = before;
-        self.clip_region(number, region.sides, best, claim, work)?;
+        self.clip_region(number, region.sides, best, work)?;
         Ok(())
     }
 
@@ -283,18 +288,17 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         number: u32,
         sides: [[P::Scalar; 2]; 2],
         best: &mut Option<Best<P::Scalar>>,
-        mut claim: Option<&mut Claim<P::Scalar>>,
         work: &mut Work,
     ) -> Result<bool, Limit> {
         let surface = self.view.surface(number as usize).ok_or(Limit::Slot)?;
-        let (planes, mut grazing) = (&self.ray.planes, false);
+        let (planes, claim) = (&self.ray.planes, self.claim);
+        let (mut grazing, mut contested) = (false, false);
         self.clipper(&surface)?.roots_within(Region { sides, ..Region::WHOLE }, work, |root, work| {
             grazing |= root.grazing;
-            if let Some(claim) = &mut claim {
-                claim.hear(&root, number);
-            }
+            contested |= claim.is_some_and(|claim| claim.is_contested_by(&root, number));
             Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
         })?;
+        self.contested |= contested;
         Ok(grazing)
     }
 

@@ -146,33 +146,24 @@ pub(super) struct Claim<S> {
     depth: S,
     /// How far apart in depth roots may be said to be that are one: each is off by the tolerance.
     tie: S,
-    /// Whether another surface's root was found at its depth.
-    pub(super) contested: bool,
 }
 
 impl<S: Scalar> Claim<S> {
     /// Of a root that memory led to on a surface.
     #[inline(always)]
     pub(super) fn of(root: &Root<S>, surface: u32, limits: &Limits<S>) -> Self {
-        let tie = (limits.tolerance + noise()) * S::from_u32(4);
-        Claim { surface, depth: root.depth, tie, contested: false }
+        Claim { surface, depth: root.depth, tie: (limits.tolerance + noise()) * S::from_u32(4) }
     }
 
-    /// How far to look for what may be closer than the best root so far, or contest this one; nowhere if that is settled.
+    /// How far to look for what may be closer than the best root so far, or contest this one.
     #[inline(always)]
     pub(super) fn up_to(&self, best: Option<&Best<S>>) -> S {
-        if self.contested { S::LEAST } else { best.map_or(self.depth, |best| best.root.depth) + self.tie }
+        best.map_or(self.depth, |best| best.root.depth) + self.tie
     }
 
-    /// Hears of a root that was found on a surface.
+    /// Whether a root that was found on a surface contests it: another one's, at its depth.
     #[inline(always)]
-    pub(super) fn hear(&mut self, root: &Root<S>, surface: u32) {
-        self.contested |= self.is_met_by(root, surface);
-    }
-
-    /// Whether a root of another surface lies at its depth.
-    #[inline(always)]
-    pub(super) fn is_met_by(&self, root: &Root<S>, surface: u32) -> bool {
+    pub(super) fn is_contested_by(&self, root: &Root<S>, surface: u32) -> bool {
         surface != self.surface && (root.depth - self.depth).abs() <= self.tie
     }
 }

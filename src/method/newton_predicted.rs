@@ -164,7 +164,8 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         let alone = Alone::new(&point, &local, solver.surface.bend);
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
-        let (mut verified, mut claim) = (true, Claim::of(&point, surface, limits));
+        let claim = Claim::of(&point, surface, limits);
+        let (mut verified, mut contested) = (true, false);
         let up_to = claim.up_to(best.as_ref());
         nearby.visit(planes, up_to, limits, work, exempt, |number, patch, crossing, work| {
             let farthest = claim.up_to(best.as_ref());
@@ -181,12 +182,12 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
             verified = false;
             solver.turn_to(&view.surface(number as usize).ok_or(Limit::Slot)?);
             roots_of_patch(solver, *fallback, patch, crossing, First::Entrance, work, |root, work| {
-                claim.hear(&root, number);
+                contested |= claim.is_contested_by(&root, number);
                 Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
             })?;
-            Ok(claim.up_to(best.as_ref()))
+            Ok(if contested { P::Scalar::LEAST } else { claim.up_to(best.as_ref()) })
         })?;
-        if claim.contested {
+        if contested {
             solver.decided = Decided::Nothing;
             return Ok(false);
         }

@@ -79,16 +79,11 @@ fn a_claim_is_contested_by_another_surface_at_its_depth() {
     let root = |depth| Root { u: 0.5, v: 0.5, depth, grazing: false };
     let limits = Limits::<f64>::default();
     let claim = Claim::of(&root(0.25), 3, &limits);
-    let after = |depth, surface| {
-        let mut claim = claim;
-        claim.hear(&root(depth), surface);
-        claim
-    };
-    let best = Best { root: root(0.25), surface: 3, kept: true };
-    assert!(after(0.25 + 2.0 * limits.tolerance, 2).contested && after(0.25 - 2.0 * limits.tolerance, 4).contested);
-    assert_eq!(after(0.25, 2).up_to(Some(&best)), f64::LEAST);
+    let contested = |depth, surface| claim.is_contested_by(&root(depth), surface);
+    assert!(contested(0.25 + 2.0 * limits.tolerance, 2) && contested(0.25 - 2.0 * limits.tolerance, 4));
     // Its own surface found once more, and what lies apart.
-    for other in [after(0.25, 3), after(0.25 + 1e-9, 2), after(0.1, 2)] {
-        assert!(!other.contested && other.up_to(Some(&best)) > 0.25);
-    }
+    assert!(!contested(0.25, 3) && !contested(0.25 + 1e-9, 2) && !contested(0.1, 2));
+    // It is looked for behind the root too.
+    let best = Best { root: root(0.25), surface: 3, kept: true };
+    assert!(claim.up_to(Some(&best)) > 0.25 + 2.0 * limits.tolerance);
 }
