@@ -23,4 +23,5 @@ pub mod shade;
 pub mod stats;
 pub mod stress;
 pub mod study;
+mod vector;
 pub mod viewed;

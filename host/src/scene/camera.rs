@@ -4,8 +4,8 @@ use toml::Spanned;
 
 use super::check::Check;
 use super::error::InputError;
-use super::polygon::length;
 use super::sampling::{self, Sampling, ScanLine};
+use crate::vector::length;
 
 /// A camera as a scene file gives it, in one of two ways.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use std::ops::RangeInclusive;
 use toml::Spanned;
 
 use super::error::InputError;
-use super::polygon::length;
 use super::source::SourceText;
+use crate::vector::length;
 
 /// Checks values against the text that they come from, which errors show.
 pub(super) struct Check<'a> {

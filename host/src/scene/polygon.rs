@@ -5,6 +5,7 @@ use toml::Spanned;
 use super::check::Check;
 use super::error::InputError;
 use super::transform::Transform;
+use crate::vector::{cross, dot, length, subtract};
 
 /// A plane polygon without holes, convex or not, whose edges meet only at its vertices.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,22 +146,6 @@ fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 fn on([a, b]: [[f64; 2]; 2], point: [f64; 2]) -> bool {
     let between = |k: usize| a[k].min(b[k]) <= point[k] && point[k] <= a[k].max(b[k]);
     turn(a, b, point) == 0.0 && between(0) && between(1)
-}
-
-fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[k] - b[k])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(super) fn length(a: [f64; 3]) -> f64 {
-    a[0].hypot(a[1]).hypot(a[2])
 }
 
 /// An entry of `polygons` as written.

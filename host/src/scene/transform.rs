@@ -4,7 +4,7 @@ use toml::{Spanned, Value};
 
 use super::check::Check;
 use super::error::InputError;
-use super::polygon::length;
+use crate::vector::length;
 
 /// An affine map of points. It is applied to every point alike, so that points with the same bits keep the same bits: where
 /// surfaces join, they still do.

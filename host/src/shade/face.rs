@@ -6,12 +6,12 @@
 
 use rayon::prelude::*;
 
-use super::vector::{cross, dot, largest, subtract, unit};
 use crate::scanline::Outcome;
 use crate::scene::camera::View;
 use crate::scene::model::Model;
 use crate::scene::rays::RayLine;
 use crate::scene::sampling::Sampling;
+use crate::vector::{cross, dot, largest, subtract, unit};
 
 /// What the light sees in the middle of a texel.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,10 +9,10 @@
 use std::array;
 
 use crate::scene::light::Light;
+use crate::vector::{dot, subtract, unit};
 use finish::Finish;
 use shadows::Facing;
 use spectrum::Basis;
-use vector::{dot, subtract, unit};
 
 pub mod display;
 mod face;
@@ -24,7 +24,6 @@ pub mod observer;
 pub mod painter;
 pub mod shadows;
 pub mod spectrum;
-mod vector;
 
 /// The lights of a scene, ready to shade points.
 #[derive(Clone, Debug, PartialEq)]

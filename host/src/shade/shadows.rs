@@ -9,7 +9,6 @@ use patchray::frame::{Aabb, exact_origin};
 use patchray::scalar::Scalar;
 
 use super::map::{MapUsed, ShadowMap};
-use super::vector::{largest, subtract};
 use crate::lower::LowerError;
 use crate::scanline::{Lane, Outcome, Tally};
 use crate::scene::appearance::Appearance;
@@ -19,6 +18,7 @@ use crate::scene::polygon::Polygon;
 use crate::scene::rays::RayLine;
 use crate::scene::trace::Precision;
 use crate::settings::Settings;
+use crate::vector::{largest, subtract};
 
 /// How the shadows of a scene's lights are found.
 #[derive(Clone, Debug, PartialEq)]
