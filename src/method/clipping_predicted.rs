@@ -1,7 +1,7 @@
 //! The improved subdivision method made to pay on today's machines: for the rays of a view.
 //!
 //! As in [`clipping_coherent`](super::clipping_coherent), the region around the previous ray's (u, v) is dealt with first, and a
-//! testing ray verifies the root found there. Departures from the paper, each for speed:
+//! testing ray verifies the root found there. Departures from the paper, for speed where no other reason is said:
 //! - the region is a narrow window around a predicted (u, v): the previous one moves on by the derivatives that Newton's
 //!   last steps gave; a window that is not proved to hold one root at most, or holds none, is lost;
 //! - the testing ray meets the patches of all surfaces, so that one verification answers the ray, and of each patch that

@@ -1,7 +1,7 @@
 //! The improved numerical method made to pay on today's machines: for the rays of a view.
 //!
 //! As in [`newton_coherent`](super::newton_coherent), Newton's method starts from what the previous ray left, and a testing
-//! ray verifies the point that it finds. Departures from the paper, each for speed:
+//! ray verifies the point that it finds. Departures from the paper, for speed where no other reason is said:
 //! - the start is predicted: the previous (u, v) moves on by the derivatives that the last Newton steps gave;
 //! - only the surface that the previous ray hit is tried first, and the testing ray meets the patches of all surfaces, so
 //!   that one verification answers the ray; it ends at the closest point so far;
