@@ -41,12 +41,16 @@ impl<'c> Judge<'c> {
     }
 
     /// Whether an answer to the ray in this place is wrong, and the truth sure enough to say so. One that was given up, or
-    /// refused, is not wrong.
-    pub fn is_lost(&self, place: usize, outcome: &Outcome) -> bool {
+    /// refused, is not wrong; nor one that is off across the ray by no more than `blur`, a length: of a small model far from the
+    /// origin the tolerance, a share of its coordinates, is more than the allowance, a share of its diagonal.
+    pub fn is_lost(&self, place: usize, outcome: &Outcome, blur: f64) -> bool {
         let (Some(truth), Some(ray)) = (self.truths.get(place), self.rays.get(place)) else {
             return false;
         };
-        let agreement = self.agreement(outcome, truth, ray);
+        let Allowance { across, most } = self.allowance(truth, ray);
+        let allowance = Allowance { across: across.max(blur / self.diagonal), most };
+        let mut agreement = Agreement::default();
+        agreement.add(outcome, truth, ray.direction, self.diagonal, &allowance);
         self.is_judged(truth) && agreement.wrong + agreement.missed + agreement.phantom > 0
     }
 

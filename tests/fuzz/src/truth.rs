@@ -33,7 +33,8 @@ pub(crate) fn none_lost(case: &Case, ray: &RayLine, answers: &[(String, Outcome)
     let verdict = Oracle::new(&case.model).trace(ray.origin, ray.direction, ray.t_min, ray.t_max);
     let rays = [*ray];
     let quick = Judge::by(&stress, &rays, vec![Truth::from(&verdict)], case.precision);
-    if !answers.iter().any(|(_, outcome)| quick.is_lost(0, outcome)) {
+    let blur = case.model.surfaces.iter().map(|surface| blur(surface, case)).fold(0.0, f64::max);
+    if !answers.iter().any(|(_, outcome)| quick.is_lost(0, outcome, blur)) {
         return;
     }
     // Along a line that is all of a surface the oracle has roots each of which blurs into the next, and takes them for one, which
@@ -46,7 +47,6 @@ pub(crate) fn none_lost(case: &Case, ray: &RayLine, answers: &[(String, Outcome)
     // the judge's least margin.
     let truth = sure.truth(0).copied().unwrap_or_default();
     let margin = truth.margin * sure.diagonal();
-    let blur = case.model.surfaces.iter().map(|surface| blur(surface, case)).fold(0.0, f64::max);
     if blur > margin {
         return;
     }
@@ -55,16 +55,9 @@ pub(crate) fn none_lost(case: &Case, ray: &RayLine, answers: &[(String, Outcome)
     if verdict.roots.first().is_some_and(|root| blur > most * root.cosine) {
         return;
     }
-    // And of a small model far from the origin the tolerance, which is a share of its coordinates, is more than the judge lets pass
-    // across the ray, a share of its diagonal.
-    let speed = ray.direction.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let near = |outcome: &Outcome| match (outcome, verdict.roots.first()) {
-        (Outcome::Hit(found), Some(root)) => (found.t - root.t).abs() * speed * root.cosine <= blur,
-        _ => false,
-    };
     for (name, outcome) in answers {
         assert!(
-            near(outcome) || !sure.is_lost(0, outcome),
+            !sure.is_lost(0, outcome, blur),
             "{name} answers {outcome:?}, the oracle {:?}; case {:?}, ray {ray:?}, surfaces {:?}",
             truth,
             (case.precision, case.numbers),
