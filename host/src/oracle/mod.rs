@@ -11,6 +11,7 @@ mod edges;
 mod exclusion;
 mod frame;
 mod injectivity;
+mod nearness;
 mod net;
 mod real;
 mod root;
@@ -19,6 +20,7 @@ mod surface;
 use crate::scene::model::{Model, ModelSurface};
 use edges::{EDGES, Edges};
 use frame::Frame;
+pub use nearness::is_farther;
 use net::Degrees;
 pub use real::{DoubleDouble, Real};
 use root::Found;
@@ -156,6 +158,11 @@ impl<R: Real> OracleIn<R> {
             surfaces,
             edges,
         }
+    }
+
+    /// The length in units of which verdicts are stated.
+    pub fn diagonal(&self) -> f64 {
+        self.diagonal
     }
 
     /// All roots of the ray `origin + t direction` with `t_min <= t <= t_max`, which may be infinite. The direction may

@@ -1,22 +1,21 @@
-//! Answers held against the oracle.
+//! Answers held against the oracle, which is asked of every ray: a method that proves its answers is no judge of another, since
+//! what both share may be what is wrong.
 //!
 //! An answer counts only where the oracle is sure of it by a margin: what a ray moved by a rounding would answer otherwise is no
-//! fault of the method. The quick oracle is asked first; it takes the one in double-double to convict.
+//! fault of the method. The quick oracle is asked first; it takes the one in double-double to convict. Margins and allowances are
+//! those of the surfaces that the answer and the truth name: what else stands in the scene excuses nothing.
 
-use crate::claims;
+use crate::claims::{Exactness, size};
 use crate::common::{Kind, Prepared};
 use crate::input::Case;
 use crate::lane::Answer;
 use patchray::bernstein::Basis;
-use patchray::scalar::Scalar;
-use patchray_host::judge::Truth;
-use patchray_host::oracle::Oracle;
+use patchray_host::oracle::{DoubleDouble, OracleIn, Real, Verdict};
 use patchray_host::scanline::{Outcome, found};
-use patchray_host::scene::model::ModelSurface;
+use patchray_host::scene::model::{Model, ModelSurface};
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::trace::Precision;
-use patchray_host::stress::case::Case as StressCase;
-use patchray_host::stress::judge::Judge;
+use std::cell::OnceCell;
 
 /// An answer as the harness has it.
 pub(crate) fn outcome<P: Kind>(prepared: &Prepared<P>, answer: &Answer<P::Scalar>) -> Outcome {
@@ -27,52 +26,138 @@ pub(crate) fn outcome<P: Kind>(prepared: &Prepared<P>, answer: &Answer<P::Scalar
     }
 }
 
-/// No answer is lost: where the oracle is sure of a ray, each is as it says, or was given up. `answers` are named.
-pub(crate) fn none_lost(case: &Case, ray: &RayLine, answers: &[(String, Outcome)]) {
-    let stress = StressCase::of_rays(case.model.clone(), vec![*ray]);
-    let verdict = Oracle::new(&case.model).trace(ray.origin, ray.direction, ray.t_min, ray.t_max);
-    let rays = [*ray];
-    let quick = Judge::by(&stress, &rays, vec![Truth::from(&verdict)], case.precision);
-    let blur = case.model.surfaces.iter().map(|surface| blur(surface, case)).fold(0.0, f64::max);
-    if !answers.iter().any(|(_, outcome)| quick.is_lost(0, outcome, blur)) {
-        return;
+/// What is true of a ray, found out as far as it is asked for.
+pub(crate) struct Truth<'c> {
+    case: &'c Case,
+    ray: RayLine,
+    /// How large other coordinates are that take part.
+    at_hand: f64,
+    quick: Sure,
+    sure: OnceCell<Sure>,
+}
+
+/// A verdict with margins as lengths.
+struct Sure {
+    verdict: Verdict,
+    /// 0 if what could not be resolved leaves the answer open.
+    margin: f64,
+}
+
+impl Sure {
+    fn of<R: Real>(model: &Model, ray: &RayLine) -> Self {
+        let oracle = OracleIn::<R>::new(model);
+        let verdict = oracle.trace(ray.origin, ray.direction, ray.t_min, ray.t_max);
+        let margin = verdict.margin * oracle.diagonal();
+        Sure { verdict, margin }
     }
-    // Along a line that is all of a surface the oracle has roots each of which blurs into the next, and takes them for one, which
-    // may lie outside the interval.
-    if case.model.surfaces.iter().any(|surface| !has_area(surface)) {
-        return;
+}
+
+impl<'c> Truth<'c> {
+    pub(crate) fn new(case: &'c Case, ray: &RayLine, at_hand: f64) -> Self {
+        Truth { case, ray: *ray, at_hand, quick: Sure::of::<f64>(&case.model, ray), sure: OnceCell::new() }
     }
-    let sure = Judge::new(&stress, &rays, case.precision);
-    // What moving the ray by as much as roots may lie off it changes is no loss: in `f32`, of weights far apart, that is more than
-    // the judge's least margin.
-    let truth = sure.truth(0).copied().unwrap_or_default();
-    let margin = truth.margin * sure.diagonal();
-    if blur > margin {
-        return;
+
+    fn sure(&self) -> &Sure {
+        self.sure.get_or_init(|| Sure::of::<DoubleDouble>(&self.case.model, &self.ray))
     }
-    // At a shallow angle the same moves the root along the ray by more than the judge lets pass of any.
-    let most = sure.allowance(&truth, ray).most * sure.diagonal();
-    if verdict.roots.first().is_some_and(|root| blur > most * root.cosine) {
-        return;
+
+    fn exact(&self, surface: &ModelSurface) -> f64 {
+        Exactness::of(self.case.precision).length(surface, self.at_hand)
     }
-    for (name, outcome) in answers {
+
+    /// Shares of a surface's size: the margin from which on an answer is judged, that from which on there has to be one, and how
+    /// far right answers may be off across the surface, and along the ray at most.
+    fn shares(&self) -> [f64; 4] {
+        match self.case.precision {
+            Precision::F64 => [1e-12, 1e-9, 1e-9, 1e-4],
+            // Where three roots all but fall together, a third of the digits is all that rounding leaves.
+            Precision::F32 => [2e-5, 1e-4, 5e-6, 5e-3],
+        }
+    }
+
+    /// The surfaces that an answer and the truth name.
+    fn concerned(&self, answer: &Outcome, verdict: &Verdict) -> impl Iterator<Item = &'c ModelSurface> {
+        let answered = if let Outcome::Hit(found) = answer { Some(found.surface) } else { None };
+        let case = self.case;
+        answered.into_iter().chain(verdict.roots.first().map(|root| root.surface)).map(|k| &case.model.surfaces[k])
+    }
+
+    /// Whether an answer is not what a verdict says, however sure. One that was given up is not wrong.
+    fn is_wrong(&self, answer: &Outcome, verdict: &Verdict) -> bool {
+        match (answer, verdict.roots.first()) {
+            (Outcome::Miss, None) => false,
+            (Outcome::Hit(found), Some(root)) => {
+                let [.., across, most] = self.shares();
+                let largest =
+                    |of: &dyn Fn(&ModelSurface) -> f64| self.concerned(answer, verdict).map(of).fold(0.0, f64::max);
+                let across = largest(&|surface| (across * size(surface)).max(4.0 * self.exact(surface)));
+                let most = largest(&|surface| most * size(surface));
+                let [x, y, z] = self.ray.direction;
+                let rounding = 2.0 * Exactness::of(self.case.precision).of_t(root.t, &self.ray);
+                let allowed = (across / root.cosine).min(most.max(across)) + rounding;
+                let off = (found.t - root.t).abs() * x.hypot(y).hypot(z);
+                off.is_nan() || off > allowed
+            }
+            (Outcome::Miss, Some(_)) | (Outcome::Hit(_), None) => true,
+            _ => false,
+        }
+    }
+
+    /// The least margin by which a verdict has to be sure to convict this answer.
+    fn least_margin(&self, answer: &Outcome, verdict: &Verdict) -> f64 {
+        let [judged, ..] = self.shares();
+        let least = |surface: &ModelSurface| (judged * size(surface)).max(4.0 * self.exact(surface));
+        self.concerned(answer, verdict).map(least).fold(0.0, f64::max)
+    }
+
+    /// An answer is right, was given up, or nothing is sure.
+    pub(crate) fn holds(&self, name: &str, answer: &Outcome) {
+        if !self.is_wrong(answer, &self.quick.verdict) {
+            return;
+        }
+        // Along a line that is all of a surface the oracle has roots each of which blurs into the next, and takes them for one,
+        // which may lie outside the interval.
+        if !has_areas(&self.case.model) {
+            return;
+        }
+        let Sure { verdict, margin } = self.sure();
         assert!(
-            !sure.is_lost(0, outcome, blur),
-            "{name} answers {outcome:?}, the oracle {:?}; case {:?}, ray {ray:?}, surfaces {:?}",
-            truth,
-            (case.precision, case.numbers),
-            case.model.surfaces
+            !(*margin >= self.least_margin(answer, verdict) && self.is_wrong(answer, verdict)),
+            "{name} answers {answer:?}, the oracle {:?} of {}, by a margin of {margin:e}; case {:?}, ray {:?}, surfaces {:?}",
+            verdict.roots.first(),
+            verdict.roots.len(),
+            (self.case.precision, self.case.numbers),
+            self.ray,
+            self.case.model.surfaces
+        );
+    }
+
+    /// Whether the ray is as clear of each surface, seen alone, as default budgets have to suffice for.
+    pub(crate) fn is_clear(&self) -> bool {
+        let [_, clear, ..] = self.shares();
+        let mut models =
+            self.case.model.surfaces.iter().map(|surface| (surface, Model::numbered(vec![surface.clone()])));
+        has_areas(&self.case.model)
+            && models.all(|(surface, model)| {
+                Sure::of::<DoubleDouble>(&model, &self.ray).margin
+                    >= (clear * size(surface)).max(4.0 * self.exact(surface))
+            })
+    }
+
+    /// Says that a ray should have been answered.
+    pub(crate) fn given_up(&self, name: &str, limit: impl std::fmt::Debug, why: &str) -> ! {
+        panic!(
+            "{name} gives up for {limit:?} under default budgets {why}; the oracle {:?}; case {:?}, ray {:?}, surfaces {:?}",
+            self.sure().verdict,
+            (self.case.precision, self.case.numbers),
+            self.ray,
+            self.case.model.surfaces
         );
     }
 }
 
-/// See [`claims::blur`].
-fn blur(surface: &ModelSurface, case: &Case) -> f64 {
-    let (unit, tolerance) = match case.precision {
-        Precision::F64 => (f64::EPSILON, f64::TOLERANCE),
-        Precision::F32 => (f64::from(f32::EPSILON), f64::from(f32::TOLERANCE)),
-    };
-    claims::blur(surface, claims::largest_coordinate(case), unit, tolerance)
+fn has_areas(model: &Model) -> bool {
+    model.surfaces.iter().all(has_area)
 }
 
 /// Whether a surface's control points lie neither all in one point nor on one line.
@@ -84,20 +169,4 @@ fn has_area(surface: &ModelSurface) -> bool {
     let least = size([a, b, c]) * size([a, b, c]) * 1e-9;
     let across = |[x, y, z]: [f64; 3]| size([b * z - c * y, c * x - a * z, a * y - b * x]);
     surface.points.iter().map(from).any(|point| across(point) > least)
-}
-
-/// Whether two answers to a ray say the same, as far as it can be told without the oracle; one that was given up says nothing.
-pub(crate) fn alike(case: &Case, one: &Outcome, other: &Outcome) -> bool {
-    match (one, other) {
-        (Outcome::GaveUp { .. }, _) | (_, Outcome::GaveUp { .. }) => true,
-        (Outcome::Hit(one), Outcome::Hit(other)) => {
-            let near = match case.precision {
-                Precision::F64 => 1e-9,
-                Precision::F32 => 1e-5,
-            };
-            (one.t - other.t).abs() <= near * one.t.abs().max(other.t.abs())
-        }
-        (Outcome::Miss, Outcome::Miss) => true,
-        _ => false,
-    }
 }
