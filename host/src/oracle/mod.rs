@@ -90,6 +90,8 @@ pub struct OracleIn<R> {
     edges: Edges<R>,
     centre: [R; 3],
     diagonal: f64,
+    /// Domains examined per ray and surface at most.
+    domains: usize,
     /// Surfaces that no ray can be judged against.
     invalid: usize,
 }
@@ -155,9 +157,15 @@ impl<R: Real> OracleIn<R> {
             centre: if surfaces.is_empty() { [R::ZERO; 3] } else { middle(all)[0] },
             // A model that is a single point has no extent to measure by.
             diagonal: if diagonal > 0.0 { diagonal } else { 1.0 },
+            domains: surface::MAX_DOMAINS,
             surfaces,
             edges,
         }
+    }
+
+    /// The same with another bound on domains per surface, for those who ask much and can do without rays that lie along one.
+    pub fn within(self, domains: usize) -> OracleIn<R> {
+        OracleIn { domains, ..self }
     }
 
     /// The length in units of which verdicts are stated.
@@ -166,7 +174,7 @@ impl<R: Real> OracleIn<R> {
     }
 
     /// All roots of the ray `origin + t direction` with `t_min <= t <= t_max`, which may be infinite. The direction may
-    /// have any length. Work is bounded: 20,000 domains per surface.
+    /// have any length. Work is bounded: 20,000 domains per surface, or [`OracleIn::within`] so many.
     pub fn trace(&self, origin: [f64; 3], direction: [f64; 3], t_min: f64, t_max: f64) -> Verdict {
         let frame = Frame::new(origin, direction, self.centre);
         let Some(frame) = frame.filter(|_| !t_min.is_nan() && !t_max.is_nan()) else {
@@ -177,6 +185,7 @@ impl<R: Real> OracleIn<R> {
             edges: &self.edges,
             range: [t_min, t_max].map(|t| frame.depth(t)),
             diagonal: self.diagonal,
+            domains: self.domains,
         };
         let mut findings = Findings::new();
         for surface in &self.surfaces {

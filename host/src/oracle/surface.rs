@@ -9,9 +9,9 @@ use super::net::{Axis, Degrees, Point, halve};
 use super::real::Real;
 use super::root::{Found, nearest_point};
 
-/// Domains examined per ray and surface. The teapot takes at most 111, a degree 15 surface met 15 times 179, a pole met
+/// Domains examined per ray and surface, unless told otherwise. The teapot takes at most 111, a degree 15 surface met 15 times 179, a pole met
 /// head on or a tangent within 1e-15 up to 2,000; more only lengthens the work for rays that lie along a surface.
-const MAX_DOMAINS: usize = 20_000;
+pub(super) const MAX_DOMAINS: usize = 20_000;
 
 /// Least extent of a domain in u or v, 2⁻⁵⁰ in f64: below it the parameters have no digits left.
 const fn min_size<R: Real>() -> f64 {
@@ -95,6 +95,8 @@ pub(super) struct Ray<'a, R> {
     pub(super) range: [R; 2],
     /// The model's diagonal.
     pub(super) diagonal: f64,
+    /// Domains examined per surface at most.
+    pub(super) domains: usize,
 }
 
 /// A domain that waits on the stack; its net is at the same place of the stack of nets.
@@ -176,7 +178,7 @@ impl<R: Real> Ray<'_, R> {
                 weight = f64::max(weight, w.to_f64());
                 depths = [depths[0].smaller(place[2]), depths[1].larger(place[2])];
             }
-            if examined == MAX_DOMAINS {
+            if examined == self.domains {
                 findings.unresolved.push(depths[0]);
                 continue;
             }

@@ -8,7 +8,7 @@ use crate::input::{Case, OfKind, interval, limits, subdivision, with_default_bud
 use crate::lane::{Lane, Way};
 use crate::ready::prepare;
 use crate::scribble::scribble;
-use crate::truth::{Truth, outcome};
+use crate::truth::{Truth, out_of_budget, outcome};
 use patchray::limits::{Acceptance, Limits};
 use patchray::scalar::Scalar;
 
@@ -61,21 +61,15 @@ impl OfKind for Coherence {
                 within_limits(&lane.work, &limits, way);
                 within_worst_case(&lane.work, &limits, &way.extent(&prepared, limits.acceptance), way);
                 let name = format!("{way:?}");
-                if answer.is_err() {
-                    let more = with_default_budgets(&limits);
+                if out_of_budget(&answer) {
                     let answered = original
                         .is_some_and(|way| lane.closest(way, &prepared, scan_line, &ray, &interval, &limits).is_ok());
                     if answered || truth.is_clear() {
                         // Memory as it was: what a search leaves there would help the next.
                         lane.remembered.clone_from(&kept);
+                        let more = with_default_budgets(&limits);
                         answer = lane.closest(way, &prepared, scan_line, &ray, &interval, &more);
-                    }
-                    if let Err(gave_up) = answer {
-                        if answered {
-                            truth.given_up(&name, gave_up.limit, "of a ray that its original answers");
-                        } else if truth.is_clear() {
-                            truth.given_up(&name, gave_up.limit, "of a ray that is clear");
-                        }
+                        truth.not_given_up(&name, &answer, answered);
                     }
                 }
                 for hit in answer.into_iter().flatten() {

@@ -7,7 +7,7 @@ use crate::common::Kind;
 use crate::input::{Case, OfKind, interval, limits, subdivision, with_default_budgets, with_kind};
 use crate::lane::{Lane, Way};
 use crate::ready::prepare;
-use crate::truth::{Truth, outcome};
+use crate::truth::{Truth, out_of_budget, outcome};
 use patchray::scalar::Scalar;
 
 pub(crate) fn check(bytes: &[u8]) {
@@ -42,11 +42,9 @@ impl OfKind for Honest {
         let name = format!("{way:?} {:?}", limits.acceptance);
         let truth = Truth::new(case, &line, 0.0);
         let mut answer = lane.closest(way, &prepared, 0, &ray, &interval, &limits);
-        if answer.is_err() && truth.is_clear() {
+        if out_of_budget(&answer) && truth.is_clear() {
             answer = lane.closest(way, &prepared, 0, &ray, &interval, &with_default_budgets(&limits));
-            if let Err(gave_up) = answer {
-                truth.given_up(&name, gave_up.limit, "of a ray that is clear");
-            }
+            truth.not_given_up(&name, &answer, false);
         }
         truth.holds(&name, &outcome(&prepared, &answer));
         for hit in answer.into_iter().flatten() {

@@ -10,6 +10,7 @@ use crate::common::{Kind, Prepared};
 use crate::input::Case;
 use crate::lane::Answer;
 use patchray::bernstein::Basis;
+use patchray::limits::{GaveUp, Limit};
 use patchray_host::oracle::{DoubleDouble, OracleIn, Real, Verdict};
 use patchray_host::scanline::{Outcome, found};
 use patchray_host::scene::model::{Model, ModelSurface};
@@ -26,6 +27,12 @@ pub(crate) fn outcome<P: Kind>(prepared: &Prepared<P>, answer: &Answer<P::Scalar
     }
 }
 
+/// Whether a ray was given up for a budget: not for what was lent to the call, which no budget makes good.
+pub(crate) fn out_of_budget<S>(answer: &Answer<S>) -> bool {
+    let lent = [Limit::Hits, Limit::Scratch, Limit::Line, Limit::Memory, Limit::Slot];
+    answer.as_ref().is_err_and(|gave_up| !lent.contains(&gave_up.limit))
+}
+
 /// What is true of a ray, found out as far as it is asked for.
 pub(crate) struct Truth<'c> {
     case: &'c Case,
@@ -34,7 +41,15 @@ pub(crate) struct Truth<'c> {
     at_hand: f64,
     quick: Sure,
     sure: OnceCell<Sure>,
+    clear: OnceCell<bool>,
 }
+
+/// Parts that the oracle looks at of a surface. A pole met head on takes up to 2,000; rays that take more lie along a surface, and
+/// nothing is known of them.
+const DOMAINS: usize = 2500;
+
+/// Parts of surfaces that the quick oracle leaves open, beyond which the other one is not asked, which would leave them open too.
+const MANY: usize = 100;
 
 /// A verdict with margins as lengths.
 struct Sure {
@@ -45,7 +60,7 @@ struct Sure {
 
 impl Sure {
     fn of<R: Real>(model: &Model, ray: &RayLine) -> Self {
-        let oracle = OracleIn::<R>::new(model);
+        let oracle = OracleIn::<R>::new(model).within(DOMAINS);
         let verdict = oracle.trace(ray.origin, ray.direction, ray.t_min, ray.t_max);
         let margin = verdict.margin * oracle.diagonal();
         Sure { verdict, margin }
@@ -54,7 +69,14 @@ impl Sure {
 
 impl<'c> Truth<'c> {
     pub(crate) fn new(case: &'c Case, ray: &RayLine, at_hand: f64) -> Self {
-        Truth { case, ray: *ray, at_hand, quick: Sure::of::<f64>(&case.model, ray), sure: OnceCell::new() }
+        Truth {
+            case,
+            ray: *ray,
+            at_hand,
+            quick: Sure::of::<f64>(&case.model, ray),
+            sure: OnceCell::new(),
+            clear: OnceCell::new(),
+        }
     }
 
     fn sure(&self) -> &Sure {
@@ -112,12 +134,7 @@ impl<'c> Truth<'c> {
 
     /// An answer is right, was given up, or nothing is sure.
     pub(crate) fn holds(&self, name: &str, answer: &Outcome) {
-        if !self.is_wrong(answer, &self.quick.verdict) {
-            return;
-        }
-        // Along a line that is all of a surface the oracle has roots each of which blurs into the next, and takes them for one,
-        // which may lie outside the interval.
-        if !has_areas(&self.case.model) {
+        if !self.is_wrong(answer, &self.quick.verdict) || !self.can_be_judged() {
             return;
         }
         let Sure { verdict, margin } = self.sure();
@@ -135,29 +152,36 @@ impl<'c> Truth<'c> {
     /// Whether the ray is as clear of each surface, seen alone, as default budgets have to suffice for.
     pub(crate) fn is_clear(&self) -> bool {
         let [_, clear, ..] = self.shares();
-        let mut models =
-            self.case.model.surfaces.iter().map(|surface| (surface, Model::numbered(vec![surface.clone()])));
-        has_areas(&self.case.model)
-            && models.all(|(surface, model)| {
-                Sure::of::<DoubleDouble>(&model, &self.ray).margin
-                    >= (clear * size(surface)).max(4.0 * self.exact(surface))
-            })
+        let of = |surface: &ModelSurface| {
+            let model = Model::numbered(vec![surface.clone()]);
+            let margin = Sure::of::<DoubleDouble>(&model, &self.ray).margin;
+            margin >= (clear * size(surface)).max(4.0 * self.exact(surface))
+        };
+        *self.clear.get_or_init(|| self.can_be_judged() && self.case.model.surfaces.iter().all(of))
     }
 
-    /// Says that a ray should have been answered.
-    pub(crate) fn given_up(&self, name: &str, limit: impl std::fmt::Debug, why: &str) -> ! {
+    /// Whether the oracle in double-double can tell more than how long it takes.
+    fn can_be_judged(&self) -> bool {
+        // Along a line that is all of a surface the oracle has roots each of which blurs into the next, and takes them for one,
+        // which may lie outside the interval.
+        self.quick.verdict.unresolved <= MANY && self.case.model.surfaces.iter().all(has_area)
+    }
+
+    /// No ray that is clear is given up for a default budget, nor one that the original of the method answers.
+    pub(crate) fn not_given_up<S>(&self, name: &str, answer: &Answer<S>, answered: bool) {
+        let Err(GaveUp { limit, .. }) = answer else { return };
+        if !out_of_budget(answer) || !(answered || self.is_clear()) {
+            return;
+        }
         panic!(
-            "{name} gives up for {limit:?} under default budgets {why}; the oracle {:?}; case {:?}, ray {:?}, surfaces {:?}",
+            "{name} gives up for {limit:?} under default budgets of a ray that {}; the oracle {:?}; case {:?}, ray {:?}, surfaces {:?}",
+            if answered { "its original answers" } else { "is clear" },
             self.sure().verdict,
             (self.case.precision, self.case.numbers),
             self.ray,
             self.case.model.surfaces
         );
     }
-}
-
-fn has_areas(model: &Model) -> bool {
-    model.surfaces.iter().all(has_area)
 }
 
 /// Whether a surface's control points lie neither all in one point nor on one line.

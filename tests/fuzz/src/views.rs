@@ -8,7 +8,7 @@ use crate::input::{Case, OfKind, any_limits, in_kernel, limits, number, subdivis
 use crate::ready::{Takes, prepare};
 use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
 use crate::scribble::scribble;
-use crate::truth::{Truth, outcome};
+use crate::truth::{Truth, out_of_budget, outcome};
 use patchray::limits::{Acceptance, Extent, Limits};
 use patchray::line::Window;
 use patchray::ray::Interval;
@@ -101,16 +101,12 @@ impl OfKind for Views {
                 if let Some(truth) = truths.get(k) {
                     let name = format!("{method:?}");
                     let original = turn == 1 && original(method).is_some() && answered[k];
-                    if answer.is_err() && (original || truth.is_clear()) {
+                    if out_of_budget(&answer) && (original || truth.is_clear()) {
                         // Memory as it was: what a search leaves there would help the next.
                         (thread.remembered, thread.followed, thread.last) = kept;
                         let more = with_default_budgets(&limits);
                         answer = thread.trace(method, &view, &mut line, scan_line, &ray, &more);
-                        if let Err(gave_up) = answer {
-                            let why =
-                                if original { "of a ray that its original answers" } else { "of a ray that is clear" };
-                            truth.given_up(&name, gave_up.limit, why);
-                        }
+                        truth.not_given_up(&name, &answer, original);
                     }
                     answered[k] |= turn == 0 && answer.is_ok();
                     truth.holds(&name, &outcome(&prepared, &answer));
