@@ -155,7 +155,8 @@ fn form(bytes: &mut Bytes<'_>, degree: u8) -> Net {
 /// Exponents along one direction.
 fn grades(bytes: &mut Bytes<'_>, degree: usize, most: i32) -> Vec<i32> {
     let kind = bytes.below(10);
-    let apart = i32::from(bytes.byte()) % (most + 1);
+    // Where an input ends, weights are as far apart as they may be.
+    let apart = most - i32::from(bytes.byte()) % (most + 1);
     let n = degree as i32;
     let grade = |i: i32| match kind {
         // Evenly toward 1, and toward 0.
@@ -250,7 +251,8 @@ pub(crate) fn target(case: &Case, bytes: &mut Bytes<'_>) -> [f64; 3] {
     let surfaces = &case.model.surfaces;
     let surface = &surfaces[usize::from(bytes.rarely(4)) % surfaces.len()];
     let (n, m) = (surface.degree_u, surface.degree_v);
-    let place = |bytes: &mut Bytes<'_>| f64::from(bytes.byte()) / 255.0;
+    // Where an input ends, in the middle.
+    let place = |bytes: &mut Bytes<'_>| f64::from(bytes.byte() ^ 128) / 255.0;
     let corner = |k: usize| surface.points[k][3];
     let ratios = [(corner(n * (m + 1)) / corner(0)).powf(1.0 / n as f64), (corner(m) / corner(0)).powf(1.0 / m as f64)];
     let point = match bytes.below(8) {
