@@ -1,6 +1,7 @@
 //! The proof that around a root there is no other.
 
 use crate::local::Local;
+use crate::parameter::Parameter;
 use crate::root::Root;
 use crate::scalar::Scalar;
 
@@ -12,30 +13,32 @@ use crate::scalar::Scalar;
 /// b₂ (|δ_v| + 2 σ_v)) |δ_v|. Let the brackets be at most α and β. With |δ| ≤ (a, b) · |J δ|, where a and b are the row sums of |J⁻¹|, this is
 /// |J δ| ≤ (a α + b β) |J δ|: so where a α + b β < 1, there is no δ but 0.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Alone<S> {
-    root: [S; 2],
+pub(crate) struct Alone<A: Parameter> {
+    root: [A; 2],
     /// σ.
-    off: [S; 2],
+    off: [A::Scalar; 2],
     /// a and b.
-    inverse: [S; 2],
-    bend: [S; 3],
+    inverse: [A::Scalar; 2],
+    bend: [A::Scalar; 3],
 }
 
-impl<S: Scalar> Alone<S> {
+impl<S: Scalar, A: Parameter<Scalar = S>> Alone<A> {
     /// Of a root on a surface, near which `local` holds.
     #[inline(always)]
-    pub(crate) fn new(root: &Root<S>, local: &Local<S>, bend: [S; 3]) -> Self {
+    pub(crate) fn new(root: &Root<A>, local: &Local<A>, bend: [S; 3], reach: S) -> Self {
         let (root, [u, v]) = ([root.u, root.v], local.at);
-        let off = [(root[0] - u).abs(), (root[1] - v).abs()];
+        let off = [root[0].minus(u).abs(), root[1].minus(v).abs()];
         // A Jacobian that may be all rounding says nothing.
-        let one = if local.may_be_singular() { S::INFINITY } else { S::ONE };
+        let one = if local.may_be_singular(reach) { S::INFINITY } else { S::ONE };
         Alone { root, off, inverse: local.inverse_bounds(one), bend }
     }
 
     /// Whether it is proved that no other root lies in a rectangle of the surface's domain. A NaN proves nothing.
     #[inline(always)]
     pub(crate) fn within(&self, [[u0, u1], [v0, v1]]: [[S; 2]; 2]) -> bool {
-        let Alone { root: [u, v], off: [off_u, off_v], inverse: [a, b], bend: [uu, uv, vv] } = *self;
+        let Alone { root, off: [off_u, off_v], inverse: [a, b], bend: [uu, uv, vv] } = *self;
+        // A distance in parameters may be told by one number to what a bound allows for.
+        let [u, v] = root.map(Parameter::number);
         // The farther of two sides, without a branch that nothing could foretell.
         let farther = |t: S, low: S, high: S| (t - (low + high) * S::HALF).abs() + (high - low) * S::HALF;
         let (far_u, far_v) = (farther(u, u0, u1), farther(v, v0, v1));

@@ -3,6 +3,7 @@
 //! Written for anything that can be added and scaled ([`Linear`]): control points in space, with or without weights, and
 //! nets projected on a ray's planes. Source: G. Farin, "Curves and Surfaces for CAGD", chapters on the Bernstein form.
 
+use crate::parameter::Parameter;
 use crate::scalar::Scalar;
 use core::ops::{Add, Mul, Sub};
 use heapless::vec::{Vec, VecView};
@@ -164,47 +165,47 @@ impl Degrees {
 ///
 /// `basis` serves all degrees but 2 × 2 and 3 × 3, which are unrolled and leave it alone.
 #[inline(always)]
-pub(crate) fn jet<S: Scalar, P: Copy, T: Linear<S>>(
+pub(crate) fn jet<A: Parameter, P: Copy, T: Linear<A::Scalar>>(
     degrees: Degrees,
     net: &[P],
-    [u, v]: [S; 2],
-    basis: &mut BasisView<'_, S>,
+    [u, v]: [A; 2],
+    basis: &mut BasisView<'_, A::Scalar>,
     part: impl Fn(P) -> T,
 ) -> Result<Jet<T>, Full> {
     // These two shapes are nearly all that models hold; unrolled, they run about twice as fast as the loops.
     if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[P; 16]>::try_from(net)) {
-        return Ok(jet_unrolled::<S, P, T, 4, 3, 16>(net, &quadratic(u), &quadratic(v), part));
+        return Ok(jet_unrolled::<A::Scalar, P, T, 4, 3, 16>(net, &quadratic(u), &quadratic(v), part));
     }
     if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&[P; 9]>::try_from(net)) {
-        return Ok(jet_unrolled::<S, P, T, 3, 2, 9>(net, &linear(u), &linear(v), part));
+        return Ok(jet_unrolled::<A::Scalar, P, T, 3, 2, 9>(net, &linear(u), &linear(v), part));
     }
     jet_any_degree(degrees, net, [u, v], basis, part)
 }
 
 /// The value alone of what [`jet`] gives.
 #[inline(always)]
-pub(crate) fn value<S: Scalar, P: Copy, T: Linear<S>>(
+pub(crate) fn value<A: Parameter, P: Copy, T: Linear<A::Scalar>>(
     degrees: Degrees,
     net: &[P],
-    [u, v]: [S; 2],
-    basis: &mut BasisView<'_, S>,
+    [u, v]: [A; 2],
+    basis: &mut BasisView<'_, A::Scalar>,
     part: impl Fn(P) -> T,
 ) -> Result<T, Full> {
     if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[P; 16]>::try_from(net)) {
-        return Ok(value_unrolled::<S, P, T, 4, 16>(net, &raised(&quadratic(u)), &raised(&quadratic(v)), part));
+        return Ok(value_unrolled::<A::Scalar, P, T, 4, 16>(net, &raised(&quadratic(u)), &raised(&quadratic(v)), part));
     }
     if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&[P; 9]>::try_from(net)) {
-        return Ok(value_unrolled::<S, P, T, 3, 9>(net, &raised(&linear(u)), &raised(&linear(v)), part));
+        return Ok(value_unrolled::<A::Scalar, P, T, 3, 9>(net, &raised(&linear(u)), &raised(&linear(v)), part));
     }
     Ok(jet_any_degree(degrees, net, [u, v], basis, part)?.point)
 }
 
 #[inline(never)]
-fn jet_any_degree<S: Scalar, P: Copy, T: Linear<S>>(
+fn jet_any_degree<A: Parameter, P: Copy, T: Linear<A::Scalar>>(
     degrees: Degrees,
     net: &[P],
-    [u, v]: [S; 2],
-    basis: &mut BasisView<'_, S>,
+    [u, v]: [A; 2],
+    basis: &mut BasisView<'_, A::Scalar>,
     part: impl Fn(P) -> T,
 ) -> Result<Jet<T>, Full> {
     basis.fill(degrees, [u, v])?;
@@ -225,35 +226,35 @@ fn jet_any_degree<S: Scalar, P: Copy, T: Linear<S>>(
 
 impl<S: Scalar> BasisView<'_, S> {
     /// Fills both bases.
-    pub(crate) fn fill(&mut self, degrees: Degrees, [u, v]: [S; 2]) -> Result<(), Full> {
+    pub(crate) fn fill<A: Parameter<Scalar = S>>(&mut self, degrees: Degrees, [u, v]: [A; 2]) -> Result<(), Full> {
         bernstein(usize::from(degrees.u), u, self.u)?;
         bernstein(usize::from(degrees.v), v, self.v)
     }
 }
 
 /// Bernstein polynomials of `degree` at `t` with two derivatives, into `out`; from those of degree − 2, raised twice.
-fn bernstein<S: Scalar>(degree: usize, t: S, out: &mut VecView<Terms<S>>) -> Result<(), Full> {
+fn bernstein<A: Parameter>(degree: usize, at: A, out: &mut VecView<Terms<A::Scalar>>) -> Result<(), Full> {
     out.clear();
-    out.resize(degree + 1, [S::ZERO; 3]).map_err(|_| Full)?;
-    let s = S::ONE - t;
+    out.resize(degree + 1, [A::Scalar::ZERO; 3]).map_err(|_| Full)?;
+    let (t, s) = (at.number(), at.rest());
     // Degree n − 2 (or 0) first: binomial · t^i going up, · s^(n−2−i) going down.
     let low = degree.saturating_sub(2);
-    let mut power = S::ONE;
+    let mut power = A::Scalar::ONE;
     if let Some(row) = BINOMIALS.get(low) {
         for (terms, &binomial) in out.iter_mut().zip(row).take(low + 1) {
-            terms[0] = power * S::from_u32(u32::from(binomial));
+            terms[0] = power * A::Scalar::from_u32(u32::from(binomial));
             power = power * t;
         }
     }
-    power = S::ONE;
+    power = A::Scalar::ONE;
     for terms in out.iter_mut().take(low + 1).rev() {
         terms[0] = terms[0] * power;
         power = power * s;
     }
     // Each raise: B_i^k = s B_i^(k−1) + t B_(i−1)^(k−1), B_i^k' = k (B_(i−1)^(k−1) − B_i^(k−1)), likewise once more.
     for k in low + 1..=degree {
-        let order = S::from_u32(k as u32);
-        let [mut left, mut left1] = [S::ZERO; 2];
+        let order = A::Scalar::from_u32(k as u32);
+        let [mut left, mut left1] = [A::Scalar::ZERO; 2];
         for terms in out.iter_mut() {
             let [here, here1, _] = *terms;
             *terms = [s * here + t * left, order * (left - here), order * (left1 - here1)];
@@ -281,15 +282,15 @@ const BINOMIALS: [[u16; MAX_DEGREE]; MAX_DEGREE - 1] = {
 
 /// The Bernstein polynomials of degree 1, and 1 − t and t.
 #[inline(always)]
-fn linear<S: Scalar>(t: S) -> ([S; 2], [S; 2]) {
-    let both = [S::ONE - t, t];
+fn linear<A: Parameter>(at: A) -> ([A::Scalar; 2], [A::Scalar; 2]) {
+    let both = [at.rest(), at.number()];
     (both, both)
 }
 
 /// The Bernstein polynomials of degree 2, and 1 − t and t.
 #[inline(always)]
-fn quadratic<S: Scalar>(t: S) -> ([S; 3], [S; 2]) {
-    let s = S::ONE - t;
+fn quadratic<A: Parameter>(at: A) -> ([A::Scalar; 3], [A::Scalar; 2]) {
+    let (t, s) = (at.number(), at.rest());
     let st = s * t;
     ([s * s, st + st, t * t], [s, t])
 }

@@ -3,17 +3,22 @@
 //! Source: G. Farin, "Curves and Surfaces for CAGD", the chapter on the de Casteljau algorithm.
 
 use crate::bernstein::{Degrees, Direction, Linear};
-use crate::scalar::Scalar;
+use crate::parameter::Parameter;
 
 /// The part of a net over [from, to] of one parameter, 0 ≤ from ≤ to ≤ 1, in place. A side at
 /// the border of [0, 1] stays to the bit. A net that is too short for its degrees stays as it is in part.
 #[inline(always)]
-pub fn restrict<S: Scalar, T: Linear<S>>(degrees: Degrees, net: &mut [T], direction: Direction, part: [S; 2]) {
+pub fn restrict<A: Parameter, T: Linear<A::Scalar>>(
+    degrees: Degrees,
+    net: &mut [T],
+    direction: Direction,
+    part: [A; 2],
+) {
     if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&mut [T; 16]>::try_from(&mut *net)) {
-        return restrict_unrolled::<S, T, 4, 16>(net, direction, part);
+        return restrict_unrolled::<A, T, 4, 16>(net, direction, part);
     }
     if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&mut [T; 9]>::try_from(&mut *net)) {
-        return restrict_unrolled::<S, T, 3, 9>(net, direction, part);
+        return restrict_unrolled::<A, T, 3, 9>(net, direction, part);
     }
     let (rows, columns) = (degrees.rows(), degrees.columns());
     match direction {
@@ -24,27 +29,27 @@ pub fn restrict<S: Scalar, T: Linear<S>>(degrees: Degrees, net: &mut [T], direct
 
 /// [`restrict`] for an order known when compiling; `N` is `ORDER²`.
 #[inline(always)]
-fn restrict_unrolled<S: Scalar, T: Linear<S>, const ORDER: usize, const N: usize>(
+fn restrict_unrolled<A: Parameter, T: Linear<A::Scalar>, const ORDER: usize, const N: usize>(
     net: &mut [T; N],
     direction: Direction,
-    part: [S; 2],
+    part: [A; 2],
 ) {
     const { assert!(ORDER * ORDER == N) }
     match direction {
-        Direction::U => restrict_lines::<S, T, ORDER, N>(net, |line, k| k * ORDER + line, part),
-        Direction::V => restrict_lines::<S, T, ORDER, N>(net, |line, k| line * ORDER + k, part),
+        Direction::U => restrict_lines::<A, T, ORDER, N>(net, |line, k| k * ORDER + line, part),
+        Direction::V => restrict_lines::<A, T, ORDER, N>(net, |line, k| line * ORDER + k, part),
     }
 }
 
 /// `ORDER` lines of as many points, of which `at` says where they are.
 #[inline(always)]
-fn restrict_lines<S: Scalar, T: Linear<S>, const ORDER: usize, const N: usize>(
+fn restrict_lines<A: Parameter, T: Linear<A::Scalar>, const ORDER: usize, const N: usize>(
     net: &mut [T; N],
     at: impl Fn(usize, usize) -> usize,
-    [from, to]: [S; 2],
+    [from, to]: [A; 2],
 ) {
-    if to != S::ONE {
-        let rest = S::ONE - to;
+    if to != A::ONE {
+        let (to, rest) = (to.number(), to.rest());
         for line in 0..ORDER {
             for level in 1..ORDER {
                 for k in (level..ORDER).rev() {
@@ -53,9 +58,9 @@ fn restrict_lines<S: Scalar, T: Linear<S>, const ORDER: usize, const N: usize>(
             }
         }
     }
-    if from != S::ZERO && to > S::ZERO {
-        let from = from / to;
-        let rest = S::ONE - from;
+    if from != A::ZERO && A::ZERO.is_below(to) {
+        let from = from.part_of(to);
+        let (from, rest) = (from.number(), from.rest());
         for line in 0..ORDER {
             for level in 1..ORDER {
                 for k in 0..ORDER - level {
@@ -68,31 +73,30 @@ fn restrict_lines<S: Scalar, T: Linear<S>, const ORDER: usize, const N: usize>(
 
 /// De Casteljau twice on `count` points, `stride` apart from `first` on: keep what is below `to`, then what is above
 /// `from`.
-fn restrict_line<S: Scalar, T: Linear<S>>(
+fn restrict_line<A: Parameter, T: Linear<A::Scalar>>(
     points: &mut [T],
     first: usize,
     stride: usize,
     count: usize,
-    [from, to]: [S; 2],
+    [from, to]: [A; 2],
 ) {
-    let (zero, one) = (S::ZERO, S::ONE);
     let at = |k: usize| first + k * stride;
-    let mut blend = |low: usize, high: usize, into: usize, t: S| {
+    let mut blend = |low: usize, high: usize, into: usize, t: A| {
         if let (Some(&p), Some(&q)) = (points.get(at(low)), points.get(at(high))) {
             if let Some(slot) = points.get_mut(at(into)) {
-                *slot = p * (one - t) + q * t;
+                *slot = p * t.rest() + q * t.number();
             }
         }
     };
-    if to != one {
+    if to != A::ONE {
         for level in 1..count {
             for k in (level..count).rev() {
                 blend(k - 1, k, k, to);
             }
         }
     }
-    if from != zero && to > zero {
-        let t = from / to;
+    if from != A::ZERO && A::ZERO.is_below(to) {
+        let t = from.part_of(to);
         for level in 1..count {
             for k in 0..count - level {
                 blend(k, k + 1, k, t);

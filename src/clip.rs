@@ -23,13 +23,23 @@ pub enum Clip<S> {
     Settled,
 }
 
-/// What rounding may have done to a projected net.
+/// What rounding may have done to a projected net. Of a rational net each coefficient is off by that times its own weight: a bound
+/// for the heaviest would drown what is light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise<S> {
-    /// By how much each coefficient may be off.
+    /// By how much each point may be off.
     pub error: S,
-    /// How far the surface may pass from the ray and still count as meeting it, times the least weight of the net.
+    /// How far the surface may pass from the ray and still count as meeting it.
     pub tolerance: S,
+}
+
+impl<S: Scalar> Noise<S> {
+    /// By how much a point's distances to a line with this normal may be off.
+    #[inline(always)]
+    fn across(&self, normal: [S; 2]) -> S {
+        let [a, b] = normal.map(S::abs);
+        self.error * (a + b)
+    }
 }
 
 /// The corners of a projected net: at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1).
@@ -37,7 +47,7 @@ pub struct Noise<S> {
 pub(crate) fn corners<F: Flat>(degrees: Degrees, net: &[F]) -> [[F::Scalar; 2]; 4] {
     let columns = degrees.columns();
     let last = net.len().saturating_sub(columns);
-    [0, last, columns - 1, last + columns - 1].map(|k| position(net.get(k).copied().unwrap_or(F::ZERO)))
+    [0, last, columns - 1, last + columns - 1].map(|k| net.get(k).copied().unwrap_or(F::ZERO).position())
 }
 
 /// The sums of a net's two chords along u, and along v, from its corners.
@@ -114,12 +124,6 @@ fn turned<S: Scalar>([x, y]: [S; 2]) -> [S; 2] {
     [-y, x]
 }
 
-#[inline(always)]
-fn position<F: Flat>(point: F) -> [F::Scalar; 2] {
-    let weight = point.weight();
-    point.f_g().map(|c| c / weight)
-}
-
 /// Clips the interval of one parameter of a projected net, (n + 1)(m + 1) points for degrees n × m, u outer.
 ///
 /// A clip is wider than the hull's by what rounding may have done, so no root is lost to rounding.
@@ -145,6 +149,7 @@ fn clip_any_degree<F: Flat>(
     let (rows, columns) = (degrees.rows(), degrees.columns());
     let normal = normal(corners(degrees, net), direction);
     let mut extents = [[F::Scalar::INFINITY, F::Scalar::LEAST]; MAX_DEGREE + 1];
+    let error = noise.across(normal);
     for (i, row) in net.chunks_exact(columns).enumerate() {
         for (j, &point) in row.iter().enumerate() {
             let along = match direction {
@@ -152,8 +157,8 @@ fn clip_any_degree<F: Flat>(
                 Direction::V => j,
             };
             if let Some(extent) = extents.get_mut(along) {
-                let distance = distance(point, normal);
-                *extent = [extent[0].lesser(distance), extent[1].greater(distance)];
+                let [low, high] = distances(point, normal, error);
+                *extent = [extent[0].lesser(low), extent[1].greater(high)];
             }
         }
     }
@@ -161,7 +166,7 @@ fn clip_any_degree<F: Flat>(
         Direction::U => rows,
         Direction::V => columns,
     };
-    hull_at_zero(&extents, order, normal, noise)
+    hull_at_zero::<F, _>(&extents, order, normal, noise, net)
 }
 
 /// [`clip`] for an order known when compiling; `N` is `ORDER²`.
@@ -172,30 +177,31 @@ fn clip_unrolled<F: Flat, const ORDER: usize, const N: usize>(
     noise: &Noise<F::Scalar>,
 ) -> Clip<F::Scalar> {
     const { assert!(ORDER * ORDER == N && ORDER > 1) }
-    let normal = normal([net[0], net[N - ORDER], net[ORDER - 1], net[N - 1]].map(position), direction);
-    let mut distances = [F::Scalar::ZERO; N];
+    let normal = normal([net[0], net[N - ORDER], net[ORDER - 1], net[N - 1]].map(F::position), direction);
+    let error = noise.across(normal);
+    let mut all = [[F::Scalar::ZERO; 2]; N];
     for k in 0..N {
-        distances[k] = distance(net[k], normal);
+        all[k] = distances(net[k], normal, error);
     }
     let extents = match direction {
-        Direction::U => extents::<F::Scalar, ORDER, N>(&distances, |k, i| k * ORDER + i),
-        Direction::V => extents::<F::Scalar, ORDER, N>(&distances, |k, i| i * ORDER + k),
+        Direction::U => extents::<F::Scalar, ORDER, N>(&all, |k, i| k * ORDER + i),
+        Direction::V => extents::<F::Scalar, ORDER, N>(&all, |k, i| i * ORDER + k),
     };
-    hull_at_zero(&extents, ORDER, normal, noise)
+    hull_at_zero::<F, _>(&extents, ORDER, normal, noise, net)
 }
 
 /// For each index in one direction the least and the largest distance.
 #[inline(always)]
 fn extents<S: Scalar, const ORDER: usize, const N: usize>(
-    distances: &[S; N],
+    distances: &[[S; 2]; N],
     at: impl Fn(usize, usize) -> usize,
 ) -> [[S; 2]; ORDER] {
     let mut extents = [[S::ZERO; 2]; ORDER];
     for k in 0..ORDER {
-        let [mut low, mut high] = [distances[at(k, 0)]; 2];
+        let [mut low, mut high] = distances[at(k, 0)];
         for i in 1..ORDER {
-            let distance = distances[at(k, i)];
-            (low, high) = (low.lesser(distance), high.greater(distance));
+            let [least, largest] = distances[at(k, i)];
+            (low, high) = (low.lesser(least), high.greater(largest));
         }
         extents[k] = [low, high];
     }
@@ -209,16 +215,28 @@ fn distance<F: Flat>(point: F, normal: [F::Scalar; 2]) -> F::Scalar {
     f * normal[0] + g * normal[1]
 }
 
+/// The least and the largest that it may be, of a rational net: of others, whose errors are all alike, they are widened when
+/// compared.
+#[inline(always)]
+fn distances<F: Flat>(point: F, normal: [F::Scalar; 2], error: F::Scalar) -> [F::Scalar; 2] {
+    let (distance, off) = (distance(point, normal), if F::RATIONAL { error * point.weight() } else { F::Scalar::ZERO });
+    if F::RATIONAL { [distance - off, distance + off] } else { [distance; 2] }
+}
+
 /// Where the convex hull of the points (k / (order − 1), `extents[k]`) meets zero; `order` is at most `N`.
 #[inline(always)]
-fn hull_at_zero<S: Scalar, const N: usize>(
-    extents: &[[S; 2]; N],
+fn hull_at_zero<F: Flat, const N: usize>(
+    extents: &[[F::Scalar; 2]; N],
     order: usize,
-    normal: [S; 2],
-    noise: &Noise<S>,
-) -> Clip<S> {
-    let [a, b] = normal.map(S::abs);
-    let error = noise.error * (a + b);
+    normal: [F::Scalar; 2],
+    noise: &Noise<F::Scalar>,
+    net: &[F],
+) -> Clip<F::Scalar> {
+    let [a, b] = normal.map(F::Scalar::abs);
+    let error = noise.across(normal);
+    let tolerance = noise.tolerance * a.greater(b) + error * F::Scalar::from_u32(4);
+    // What widens the extents when they are compared.
+    let error = if F::RATIONAL { F::Scalar::ZERO } else { error };
     let order = order.min(N);
     let [mut least, mut largest] = extents[0];
     for k in 1..order {
@@ -229,22 +247,30 @@ fn hull_at_zero<S: Scalar, const N: usize>(
     if least > error || largest < -error {
         return Clip::Nothing;
     }
-    if largest - least <= noise.tolerance * a.greater(b) + error * S::from_u32(4) {
+    let settled = if F::RATIONAL {
+        // Of points, and not of coefficients, among which what is light would count for nothing.
+        let within = |point: &F| distance(*point, normal).abs() <= tolerance * point.weight();
+        net.iter().all(within)
+    } else {
+        largest - least <= tolerance
+    };
+    if settled {
         return Clip::Settled;
     }
     // An end that holds zero is not clipped.
     let last = order - 1;
-    let degree = S::from_u32(last as u32);
+    let degree = F::Scalar::from_u32(last as u32);
     // A few roundings went into each.
-    let slack = S::EPSILON * S::from_u32(4);
+    let slack = F::Scalar::EPSILON * F::Scalar::from_u32(4);
     // No k is beyond `last`; said again, because where arithmetic is done by calls, closures may be left out of line, and then
     // this is not seen there.
     let forward = |k: usize| extents[k.min(N - 1)];
     let backward = |k: usize| extents[last.wrapping_sub(k).min(N - 1)];
-    let from = clear::<S, N>(order, forward, error).map_or(S::ZERO, |at| at / degree - slack);
-    let to = clear::<S, N>(order, backward, error).map_or(S::ONE, |at| S::ONE - (at / degree - slack));
-    let (from, to) = (S::ZERO.greater(from), S::ONE.lesser(to));
-    if from < to { Clip::Part([from, to]) } else { Clip::Part([S::ZERO, S::ONE]) }
+    let from = clear::<F::Scalar, N>(order, forward, error).map_or(F::Scalar::ZERO, |at| at / degree - slack);
+    let to = clear::<F::Scalar, N>(order, backward, error)
+        .map_or(F::Scalar::ONE, |at| F::Scalar::ONE - (at / degree - slack));
+    let (from, to) = (F::Scalar::ZERO.greater(from), F::Scalar::ONE.lesser(to));
+    if from < to { Clip::Part([from, to]) } else { Clip::Part([F::Scalar::ZERO, F::Scalar::ONE]) }
 }
 
 /// How far from its end the hull is clear of zero, counted by control points; `None` if the first extent holds zero.

@@ -12,15 +12,17 @@
 use crate::bernstein::{BasisView, Direction, Full};
 use crate::clip::{Clip, chords, clip, corners};
 use crate::contract::{Contraction, Single, contract, is_provable, single};
-use crate::graze::{Across, across, allowed, first_met, on_line, polished};
+use crate::graze::{Across, Met, across, allowed, first_met, on_line, polished};
 use crate::limits::{Limit, Limits, Work, spend};
-use crate::local::Local;
+use crate::local::{Exactness, Local};
+use crate::parameter::Parameter;
 use crate::part::Part;
 use crate::planes::{Planes, project_net};
 use crate::point::Point;
+use crate::ray::Incidence;
 use crate::region::{Order, Region};
 use crate::root::{Place, Root};
-use crate::roots::Seen;
+use crate::roots::{Seen, Sighting};
 use crate::scalar::Scalar;
 use crate::story::Event;
 use crate::surface::Surface;
@@ -34,10 +36,10 @@ pub struct ClipRoom<'s, P: Point> {
     /// For that of the region at hand.
     pub part: &'s mut VecView<P::Flat>,
     /// For regions that wait; its capacity bounds them, as [`Limits::pending_domains`] does.
-    pub pending: &'s mut VecView<Region<P::Scalar>>,
+    pub pending: &'s mut VecView<Region<P::Parameter>>,
     /// For the roots found so far, so that one found from two regions counts once. Those for which there is no room may
     /// be found again.
-    pub roots: &'s mut VecView<Root<P::Scalar>>,
+    pub roots: &'s mut VecView<Root<P::Parameter>>,
     /// For evaluating the surface.
     pub basis: BasisView<'s, P::Scalar>,
 }
@@ -64,15 +66,20 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
 
     /// The root in a region, if it is proved to hold one at most. The net has to be projected.
     #[inline(always)]
-    pub(crate) fn single(&mut self, region: Region<P::Scalar>, work: &mut Work) -> Result<Single<P::Scalar>, Limit> {
+    pub(crate) fn single(
+        &mut self,
+        region: Region<P::Parameter>,
+        work: &mut Work,
+    ) -> Result<Single<P::Parameter>, Limit> {
         let Clipper { surface, planes, limits, room } = self;
         let ClipRoom { whole, basis, .. } = &mut **room;
         let whole = whole.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
-        single(surface, planes, whole, region, limits, basis, work)
+        let exact = Exactness::of(surface, planes, limits);
+        single(surface, planes, whole, region, &exact, limits, basis, work)
     }
 
     /// The surface at (u, v) to first order. The net has to be projected.
-    pub(crate) fn local(&mut self, at: [P::Scalar; 2], work: &mut Work) -> Result<Local<P::Scalar>, Limit> {
+    pub(crate) fn local(&mut self, at: [P::Parameter; 2], work: &mut Work) -> Result<Local<P::Parameter>, Limit> {
         let Clipper { surface: Surface { net, .. }, limits, room, .. } = self;
         let ClipRoom { whole, basis, .. } = &mut **room;
         let whole = whole.get(..net.points().len()).ok_or(Limit::Scratch)?;
@@ -83,9 +90,9 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
     #[inline(always)]
     pub(crate) fn roots_within(
         &mut self,
-        region: Region<P::Scalar>,
+        region: Region<P::Parameter>,
         work: &mut Work,
-        mut found: impl FnMut(Root<P::Scalar>, &mut Work),
+        mut found: impl FnMut(Root<P::Parameter>, &mut Work),
     ) -> Result<(), Limit> {
         match self.single(region, work)? {
             Single::Nothing => {}
@@ -103,7 +110,7 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
 
     /// The search for all points where the ray's line meets the surface, in `order`.
     #[inline(always)]
-    pub fn roots(&mut self, order: Order<P::Scalar>) -> Result<Roots<'_, 's, 'm, P>, Limit> {
+    pub fn roots(&mut self, order: Order<P::Parameter>) -> Result<Roots<'_, 's, 'm, P>, Limit> {
         self.project()?;
         self.search(order, None)
     }
@@ -112,13 +119,15 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
     #[inline]
     pub(crate) fn search(
         &mut self,
-        order: Order<P::Scalar>,
-        region: Option<Region<P::Scalar>>,
+        order: Order<P::Parameter>,
+        region: Option<Region<P::Parameter>>,
     ) -> Result<Roots<'_, 's, 'm, P>, Limit> {
         let Clipper { surface, planes, limits, room } = self;
         let ClipRoom { whole, part, pending, roots: found, basis } = &mut **room;
         let whole: &[P::Flat] = whole.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
-        let part = Part::whole(surface.net.degrees(), whole, planes.projection_error(), part);
+        let exact = Exactness::of(surface, planes, limits);
+        let degrees = surface.net.degrees();
+        let part = Part::whole(degrees, whole, exact.of_net::<P::Flat>(degrees), part);
         let mut part = part.map_err(|Full| Limit::Scratch)?;
         if let (Some(part), Some(region)) = (&mut part, region) {
             part.become_region(whole, region);
@@ -126,7 +135,21 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
         pending.clear();
         found.clear();
         let open = part.is_some();
-        Ok(Roots { surface, planes, limits, whole, part, open, bisected: false, order, pending, found, basis })
+        Ok(Roots {
+            surface,
+            planes,
+            limits,
+            exact,
+            whole,
+            part,
+            open,
+            bisected: false,
+            sighting: Sighting::New,
+            order,
+            pending,
+            found,
+            basis,
+        })
     }
 }
 
@@ -137,6 +160,7 @@ pub struct Roots<'a, 's, 'm, P: Point> {
     surface: &'a Surface<'m, P>,
     planes: &'a Planes<P::Scalar>,
     limits: &'a Limits<P::Scalar>,
+    exact: Exactness<P::Scalar>,
     /// The surface's projected net.
     whole: &'a [P::Flat],
     /// The region at hand; none of a surface that is seen to pass the ray by.
@@ -145,9 +169,11 @@ pub struct Roots<'a, 's, 'm, P: Point> {
     open: bool,
     /// Whether any region was bisected.
     bisected: bool,
-    order: Order<P::Scalar>,
-    pending: &'a mut VecView<Region<P::Scalar>>,
-    found: &'a mut VecView<Root<P::Scalar>>,
+    /// What the last root was.
+    sighting: Sighting<P::Scalar>,
+    order: Order<P::Parameter>,
+    pending: &'a mut VecView<Region<P::Parameter>>,
+    found: &'a mut VecView<Root<P::Parameter>>,
     basis: &'a mut BasisView<'s, P::Scalar>,
 }
 
@@ -158,24 +184,31 @@ impl<P: Point> Roots<'_, '_, '_, P> {
         !self.pending.is_empty()
     }
 
+    /// The depth of the root for which the last one stands: found before, but met behind it.
+    #[inline(always)]
+    pub(crate) fn replaced(&self) -> Option<P::Scalar> {
+        if let Sighting::Nearer(depth) = self.sighting { Some(depth) } else { None }
+    }
+
     /// The next root; `None` if there are no more.
     ///
     /// # Errors
     /// What ran out: then the search is at its end, too.
     #[inline(always)]
-    pub fn next(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+    pub fn next(&mut self, work: &mut Work) -> Result<Option<Root<P::Parameter>>, Limit> {
         // Most surfaces have one root, after which no region waits.
         if self.open || self.regions_wait() { self.clip_on(work) } else { Ok(None) }
     }
 
     #[inline(never)]
-    fn clip_on(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
-        let Roots { surface, planes, limits, whole, part: Some(part), pending, found, basis, order, .. } = self else {
+    fn clip_on(&mut self, work: &mut Work) -> Result<Option<Root<P::Parameter>>, Limit> {
+        let Roots { surface, planes, limits, exact, whole, part: Some(part), pending, found, basis, order, .. } = self
+        else {
             return Ok(None);
         };
-        let tolerance = limits.tolerance;
-        // Whether the last clip, which was of the other parameter, found it settled.
-        let mut settled = false;
+        let (exact, tolerance) = (&*exact, exact.tolerance);
+        // Whether the last clip, which was of the other parameter, found it settled; or left it as it was.
+        let (mut settled, mut stuck) = (false, false);
         // Ends: each turn counts a clip against its budget.
         loop {
             if !self.open {
@@ -184,7 +217,7 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                     match order.pop(pending) {
                         Some(region) => {
                             P::Scalar::tell(|| Event::Region {
-                                sides: region.sides.map(|side| side.map(P::Scalar::to_f64)),
+                                sides: region.sides.map(|side| side.map(|t| t.number().to_f64())),
                             });
                             part.become_region(whole, region);
                         }
@@ -192,12 +225,12 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                     }
                     // Most halves of a small region, which only a fold keeps from being proved, lie apart from the ray across
                     // it; of larger ones a clip is the better question.
-                    let folded = is_provable(surface, part.region.widths());
+                    let folded = is_provable(surface, part.region.widths(), exact);
                     if !folded || !matches!(across(part.degrees, part.net, &part.noise(tolerance)), Across::Apart) {
                         break;
                     }
                 }
-                (self.open, settled) = (true, false);
+                (self.open, settled, stuck) = (true, false, false);
             }
             spend(&mut work.clip_steps, limits.clip_steps, Limit::ClipSteps)?;
             let direction = part.region.next;
@@ -209,11 +242,11 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                 Clip::Nothing => Step::Done(None),
                 Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
                     part.narrow(direction, [from, to]);
-                    settled = false;
-                    if !self.bisected || may_be_single(surface, part) {
-                        match contract(surface, whole, part.region, limits, basis, work)? {
+                    (settled, stuck) = (false, false);
+                    if !self.bisected || may_be_single(surface, part, exact) {
+                        match contract(surface, whole, part.region, part.error, exact, limits, basis, work)? {
                             Contraction::Open => Step::On,
-                            Contraction::Done(place) => Step::Done(place),
+                            Contraction::Done(place) => Step::Done(place.map(crossed)),
                         }
                     } else {
                         Step::On
@@ -222,18 +255,24 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                 // A width that cannot be halved is as settled as one that need not be. One that moves nothing, as along a
                 // collapsed edge, is not to be halved when the other, settled as seen across its own line, is what keeps it
                 // from being clipped.
+                //
+                // Along a collapsed edge each half is as long as the whole, down to the edge: the other parameter is clipped
+                // toward it as long as that shortens it.
+                Clip::Part(_) if !(stuck || settled) && part.is_collapsed(direction) => {
+                    stuck = true;
+                    Step::On
+                }
                 Clip::Part(_) => {
                     let halves = || {
-                        let halved = if settled { part.longer() } else { direction };
+                        let halved = if settled { part.longer() } else { part.much_longer().unwrap_or(direction) };
                         part.region.halves(halved).map_or(Step::Settled, Step::Bisect)
                     };
                     match across(part.degrees, part.net, &noise) {
                         Across::Apart => Step::Done(None),
                         Across::Line(along) => {
-                            match on_line(surface, planes, whole, &part.region, along, [tolerance, part.error], basis)?
-                            {
+                            match on_line(surface, planes, whole, &part.region, along, exact, part.error, basis)? {
                                 None => halves(),
-                                place => Step::Done(place),
+                                met => Step::Done(met),
                             }
                         }
                         Across::Open => halves(),
@@ -242,10 +281,16 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                 Clip::Settled => Step::Settled,
             };
             if let (Step::Settled, true) = (&step, settled) {
-                step = match nearest(surface, planes, whole, part, tolerance, basis)? {
-                    // Between lines that are near parallel both clips may settle too soon.
-                    None => part.region.halves(part.longer()).map_or(Step::Done(None), Step::Bisect),
-                    place => Step::Done(place),
+                step = match nearest(surface, planes, whole, part, exact, basis)? {
+                    Some(met) => Step::Done(Some(met)),
+                    None if passes(surface, whole, part, exact, basis)? => Step::Done(None),
+                    // Between lines that are near parallel both clips may settle too soon. A region of which the number type
+                    // holds no part is as one of its points, all of which pass the ray by more than rounding.
+                    None => {
+                        let longer = part.longer();
+                        let halves = part.region.halves(longer).or_else(|| part.region.halves(longer.other()));
+                        halves.map_or(Step::Done(None), Step::Bisect)
+                    }
                 };
             }
             match step {
@@ -260,14 +305,15 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                     order.push(first, pending, limits.pending_domains)?;
                     self.open = false;
                 }
-                Step::Done(place) => {
+                Step::Done(met) => {
                     self.open = false;
-                    if let Some(place) = place {
-                        let root = place.root(&surface.net, whole, planes, limits, basis)?;
-                        let seen =
-                            Seen { surface, planes, whole, roots: found, allowed: allowed(tolerance, part.error) };
-                        if !seen.holds(&root, limits, basis)? {
-                            let _ = found.push(root);
+                    if let Some(Met { place, incidence }) = met {
+                        let mut root = place.root(&surface.net, whole, planes, exact, basis)?;
+                        root.incidence = root.incidence.max(incidence);
+                        let seen = Seen { surface, planes, whole, exact, allowed: allowed(exact, part.error) };
+                        let sighting = seen.add(&mut root, found, basis)?;
+                        if sighting != Sighting::Known {
+                            self.sighting = sighting;
                             return Ok(Some(root));
                         }
                     }
@@ -280,10 +326,10 @@ impl<P: Point> Roots<'_, '_, '_, P> {
 /// Whether a region may be proved to hold one root at most, by the mean Jacobian over it, which the corners of its net tell
 /// without evaluating the surface: if not by four times what the proof allows for, asking would be in vain.
 #[inline(always)]
-fn may_be_single<P: Point>(surface: &Surface<'_, P>, part: &Part<'_, P::Flat>) -> bool {
+fn may_be_single<P: Point>(surface: &Surface<'_, P>, part: &Part<'_, P::Flat>, exact: &Exactness<P::Scalar>) -> bool {
     let widths = part.region.widths();
     // That is not asked for anyhow.
-    if !is_provable(surface, widths) {
+    if !is_provable(surface, widths, exact) {
         return false;
     }
     let [[fu, gu], [fv, gv]] = chords(corners(part.degrees, part.net)).map(|chord| chord.map(|c| c * P::Scalar::HALF));
@@ -298,30 +344,41 @@ fn may_be_single<P: Point>(surface: &Surface<'_, P>, part: &Part<'_, P::Flat>) -
     way <= determinant * P::Scalar::TWO * u.lesser(v)
 }
 
+/// A place where the ray does not follow the surface.
+#[inline(always)]
+fn crossed<A: Parameter>(place: Place<A>) -> Met<A> {
+    Met { place, incidence: Incidence::Crossing }
+}
+
 /// That a region was clipped.
-fn told<S: Scalar>(region: &Region<S>, direction: Direction, clipped: &Clip<S>) -> Event {
+fn told<A: Parameter>(region: &Region<A>, direction: Direction, clipped: &Clip<A::Scalar>) -> Event {
     let left = match clipped {
         Clip::Nothing => None,
-        Clip::Part(part) => Some(part.map(S::to_f64)),
+        Clip::Part(part) => Some(part.map(Scalar::to_f64)),
         Clip::Settled => Some([0.0, 1.0]),
     };
-    Event::Clip { sides: region.sides.map(|side| side.map(S::to_f64)), in_v: direction == Direction::V, left }
+    Event::Clip {
+        sides: region.sides.map(|side| side.map(|t| t.number().to_f64())),
+        in_v: direction == Direction::V,
+        left,
+    }
 }
 
 /// What a clip leads to.
-enum Step<S> {
+enum Step<A: Parameter> {
     /// The next clip.
     On,
     /// The region's halves.
-    Bisect([Region<S>; 2]),
+    Bisect([Region<A>; 2]),
     /// The clipped parameter cannot be told closer.
     Settled,
     /// The region is done with: where its root is, if it has one.
-    Done(Option<Place<S>>),
+    Done(Option<Met<A>>),
 }
 
 /// Of a region whose points all pass the ray within the tolerance or the error of their net, the one that the ray meets
-/// first, in its interval if one is; from its corners and its middle, each brought nearer by Newton's method. `None` if
+/// first, in its interval if one is; from its corners, the middles of its
+/// sides and its middle, each brought nearer by Newton's method. `None` if
 /// the ray passes all of them by, as it may at a phantom hit.
 ///
 /// Such a region is small but where the ray lies in the surface.
@@ -332,13 +389,30 @@ fn nearest<P: Point>(
     planes: &Planes<P::Scalar>,
     whole: &[P::Flat],
     part: &Part<'_, P::Flat>,
-    tolerance: P::Scalar,
+    exact: &Exactness<P::Scalar>,
     basis: &mut BasisView<'_, P::Scalar>,
-) -> Result<Option<Place<P::Scalar>>, Limit> {
-    let [[u0, u1], [v0, v1]] = part.region.sides;
-    let mut from = |at| polished(surface, whole, &part.region, at, &mut *basis);
-    let places = [from(part.region.middle())?, from([u0, v0])?, from([u0, v1])?, from([u1, v0])?, from([u1, v1])?];
-    first_met(surface, planes, places, [tolerance, part.error], basis)
+) -> Result<Option<Met<P::Parameter>>, Limit> {
+    let ([[u0, u1], [v0, v1]], [u, v]) = (part.region.sides, part.region.middle());
+    let mut from = |at| polished(surface, whole, &part.region, at, exact, &mut *basis);
+    let corners = [from([u0, v0])?, from([u0, v1])?, from([u1, v0])?, from([u1, v1])?];
+    let [a, b, c, d] = corners;
+    let places = [from([u, v])?, a, b, c, d, from([u0, v])?, from([u1, v])?, from([u, v0])?, from([u, v1])?];
+    first_met(surface, planes, places, exact, part.error, basis)
+}
+
+/// Whether a region is so small, and so far from the ray at its corner, that the ray passes all of it by more than rounding.
+#[cold]
+#[inline(never)]
+fn passes<P: Point>(
+    surface: &Surface<'_, P>,
+    whole: &[P::Flat],
+    part: &Part<'_, P::Flat>,
+    exact: &Exactness<P::Scalar>,
+    basis: &mut BasisView<'_, P::Scalar>,
+) -> Result<bool, Limit> {
+    let [[u, _], [v, _]] = part.region.sides;
+    let corner = Place::look([u, v], surface.net.degrees(), whole, basis)?;
+    Ok(corner.local.distance() > part.extent() + exact.rounding + part.error)
 }
 
 #[cfg(test)]

@@ -4,8 +4,9 @@
 
 use crate::bernstein::BasisView;
 use crate::limits::{Limit, Limits, Work};
-use crate::local::Local;
+use crate::local::{Exactness, Local};
 use crate::newton::Solver;
+use crate::parameter::Parameter;
 use crate::planes::Planes;
 use crate::point::Point;
 use crate::region::Region;
@@ -14,32 +15,36 @@ use crate::scalar::Scalar;
 use crate::surface::Surface;
 
 /// What contracting a region came to.
-pub(crate) enum Contraction<S> {
+pub(crate) enum Contraction<A: Parameter> {
     /// Nothing is proved: the region may hold more than one root.
     Open,
     /// The region is done with: where its root is, if it has one.
-    Done(Option<Place<S>>),
+    Done(Option<Place<A>>),
 }
 
 /// What a proof of at most one root came to.
-pub(crate) enum Single<S> {
+pub(crate) enum Single<A: Parameter> {
     /// There is none.
     Nothing,
     /// One, and the surface there to first order.
-    Root(Root<S>, Local<S>),
+    Root(Root<A>, Local<A>),
     /// There may be more than one.
     Unproved,
 }
 
-/// Regions over which the surface may stray farther than this, in the frame, are clipped on without asking whether they hold
+/// Regions over which the surface may stray farther than this, as a share of its largest coordinate, are clipped on without asking whether they hold
 /// one root at most: few would be proved to, and asking costs a third of a clip. Ten times as much costs 2 % more instructions
 /// on the common teapot.
 const PROVABLE: f64 = 0.0025;
 
 /// Whether it is worth asking of a region of these widths.
 #[inline(always)]
-pub(crate) fn is_provable<P: Point>(surface: &Surface<'_, P>, widths: [P::Scalar; 2]) -> bool {
-    surface.strays(widths) <= P::Scalar::from_f64(PROVABLE)
+pub(crate) fn is_provable<P: Point>(
+    surface: &Surface<'_, P>,
+    widths: [P::Scalar; 2],
+    exact: &Exactness<P::Scalar>,
+) -> bool {
+    surface.strays(widths) <= P::Scalar::from_f64(PROVABLE) * exact.reach
 }
 
 /// Newton's method, in a region that is proved to hold at most one root: ends with that root, or with the proof that there
@@ -48,44 +53,61 @@ pub(crate) fn is_provable<P: Point>(surface: &Surface<'_, P>, widths: [P::Scalar
 /// Over the region the surface departs from its linear part at the middle by at most σ ([`Surface::strays`]). With J the
 /// Jacobian there, the projection is injective on the region if J⁻¹ turns 2 σ into less than half a width in each
 /// parameter, and a root lies no farther than J⁻¹ turns σ into from where the step leads (R. Krawczyk, "Newton-Algorithmen
-/// zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4, 1969). So each step at least halves the region.
+/// zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4, 1969). So each step at least halves the region. `error` is how far
+/// rounding may have moved the region's sides, as a distance in space.
 #[inline(always)]
 pub(crate) fn contract<P: Point>(
     surface: &Surface<'_, P>,
     whole: &[P::Flat],
-    mut region: Region<P::Scalar>,
+    mut region: Region<P::Parameter>,
+    error: P::Scalar,
+    exact: &Exactness<P::Scalar>,
     limits: &Limits<P::Scalar>,
     basis: &mut BasisView<'_, P::Scalar>,
     work: &mut Work,
-) -> Result<Contraction<P::Scalar>, Limit> {
-    if !is_provable(surface, region.widths()) {
+) -> Result<Contraction<P::Parameter>, Limit> {
+    if !is_provable(surface, region.widths(), exact) {
         return Ok(Contraction::Open);
     }
+    let loose = Exactness { rounding: exact.rounding + error, ..*exact };
     // Ends: each turn counts a step against its budget; and the region halves until the number type holds no more.
     loop {
         let halves = region.widths().map(|width| width * P::Scalar::HALF);
         let strays = surface.strays(halves);
-        let [u, v] = region.middle();
-        let local = Local::step_at([u, v], surface.net.degrees(), whole, basis, limits, work)?;
+        let middle = region.middle();
+        let local = Local::step_at(middle, surface.net.degrees(), whole, basis, limits, work)?;
         let [along_u, along_v] = local.inverse_bounds(strays);
         // A NaN or a singular Jacobian proves nothing; nor does one that may be all rounding, as of a flat net seen edge on.
-        let proved = !local.may_be_singular() && along_u + along_u < halves[0] && along_v + along_v < halves[1];
+        let proved =
+            !local.may_be_singular(exact.reach) && along_u + along_u < halves[0] && along_v + along_v < halves[1];
         let Some([du, dv]) = local.step().filter(|_| proved) else {
             return Ok(Contraction::Open);
         };
-        let next = [u + du, v + dv];
-        let [slack_u, slack_v] = local.inverse_bounds(strays + limits.tolerance);
-        let near = [[next[0] - slack_u, next[0] + slack_u], [next[1] - slack_v, next[1] + slack_v]];
+        let next = [middle[0].plus(du), middle[1].plus(dv)];
+        // A distance is a residual over the weight, which over a region that is proved varies little.
+        let heaviest = if P::RATIONAL { local.weight * P::Scalar::from_u32(4) } else { P::Scalar::ONE };
+        let [slack_u, slack_v] = local.inverse_bounds(strays + loose.allowed() * heaviest);
+        let near = [[next[0].plus(-slack_u), next[0].plus(slack_u)], [next[1].plus(-slack_v), next[1].plus(slack_v)]];
         // A root is proved to lie there; and the step, shorter than all that the region allows for, leaves no more than the
         // tolerance.
-        if region.encloses(near) && surface.strays([du, dv]) <= limits.tolerance {
+        // Of a rational surface the rounding of the step may be more, where the weight falls.
+        let regular = !P::RATIONAL || local.is_regular_enough::<P::Flat>([du, dv], exact);
+        let lands = surface.strays([du, dv]) <= exact.tolerance * local.lightest::<P::Flat>([du, dv]) && regular;
+        if region.encloses(near) && lands {
             return Ok(Contraction::Done(Some(Place { at: next, local })));
         }
-        if strays <= limits.tolerance {
-            let (mut local, mut next, mut held) = (local, next, region.nearest(next));
-            let off = [next[0] - held[0], next[1] - held[1]];
-            let seen = !P::RATIONAL || off == [P::Scalar::ZERO; 2];
-            if !(seen && local.may_hold(off, limits.tolerance)) {
+        let smaller = region.meet(near);
+        // As small as it gets: the surface strays no farther over it, or rounding keeps it from halving again.
+        let stays = |smaller: &Region<P::Parameter>| {
+            let widths = smaller.widths();
+            (0..2).all(|k| widths[k] > halves[k] * P::Scalar::from_f64(1.5))
+        };
+        if strays <= exact.tolerance * local.lightest::<P::Flat>(halves) || smaller.as_ref().is_some_and(stays) {
+            let off =
+                |next: [P::Parameter; 2], held: [P::Parameter; 2]| [next[0].minus(held[0]), next[1].minus(held[1])];
+            let (mut local, mut next, held) = (local, next, region.nearest(next));
+            let seen = !P::RATIONAL || (next == held && lands);
+            if !(seen && local.may_hold(off(next, held), exact)) {
                 // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
                 // far along the surface, and toward the border a weight may fall, by which distances grow: one more from the
                 // border says on which side of it the root lies.
@@ -93,13 +115,14 @@ pub(crate) fn contract<P: Point>(
                 let Some([du, dv]) = local.step() else {
                     return Ok(Contraction::Open);
                 };
-                next = [held[0] + du, held[1] + dv];
-                held = region.nearest(next);
+                next = [held[0].plus(du), held[1].plus(dv)];
             }
-            let on_it = local.may_hold([next[0] - held[0], next[1] - held[1]], limits.tolerance);
-            return Ok(Contraction::Done(on_it.then_some(Place { at: held, local })));
+            // A root that rounding has moved out of its region is where it is; one beyond the surface's edge is held there.
+            let at = Region::WHOLE.nearest(next);
+            let on_it = local.may_hold(off(next, region.nearest(next)), &loose) && local.may_hold(off(next, at), exact);
+            return Ok(Contraction::Done(on_it.then_some(Place { at, local })));
         }
-        match region.meet(near) {
+        match smaller {
             Some(smaller) => region = smaller,
             None => return Ok(Contraction::Done(None)),
         }
@@ -112,14 +135,15 @@ pub(crate) fn single<P: Point>(
     surface: &Surface<'_, P>,
     planes: &Planes<P::Scalar>,
     whole: &[P::Flat],
-    region: Region<P::Scalar>,
+    region: Region<P::Parameter>,
+    exact: &Exactness<P::Scalar>,
     limits: &Limits<P::Scalar>,
     basis: &mut BasisView<'_, P::Scalar>,
     work: &mut Work,
-) -> Result<Single<P::Scalar>, Limit> {
-    Ok(match contract(surface, whole, region, limits, basis, work)? {
+) -> Result<Single<P::Parameter>, Limit> {
+    Ok(match contract(surface, whole, region, P::Scalar::ZERO, exact, limits, basis, work)? {
         Contraction::Done(Some(place)) => {
-            let root = place.root(&surface.net, whole, planes, limits, basis)?;
+            let root = place.root(&surface.net, whole, planes, exact, basis)?;
             Single::Root(root, place.local)
         }
         Contraction::Done(None) => Single::Nothing,
@@ -130,11 +154,11 @@ pub(crate) fn single<P: Point>(
 /// [`single`] of the surface that a solver is at.
 pub(crate) fn single_of<P: Point>(
     solver: &mut Solver<'_, '_, '_, P>,
-    region: Region<P::Scalar>,
+    region: Region<P::Parameter>,
     work: &mut Work,
-) -> Result<Single<P::Scalar>, Limit> {
+) -> Result<Single<P::Parameter>, Limit> {
     solver.project()?;
-    let Solver { surface, planes, limits, flat, basis, .. } = solver;
+    let Solver { surface, planes, limits, exact, flat, basis, .. } = solver;
     let whole = flat.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
-    single(surface, planes, whole, region, limits, basis, work)
+    single(surface, planes, whole, region, exact, limits, basis, work)
 }

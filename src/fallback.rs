@@ -22,10 +22,10 @@ pub trait Fallback<P: Point> {
         &mut self,
         surface: &Surface<'_, P>,
         planes: &Planes<P::Scalar>,
-        region: Region<P::Scalar>,
+        region: Region<P::Parameter>,
         limits: &Limits<P::Scalar>,
         work: &mut Work,
-        found: impl FnMut(Root<P::Scalar>, &mut Work),
+        found: impl FnMut(Root<P::Parameter>, &mut Work),
     ) -> Result<(), Limit>;
 }
 
@@ -40,10 +40,10 @@ impl<P: Point> Fallback<P> for NoFallback {
         &mut self,
         _: &Surface<'_, P>,
         _: &Planes<P::Scalar>,
-        _: Region<P::Scalar>,
+        _: Region<P::Parameter>,
         _: &Limits<P::Scalar>,
         _: &mut Work,
-        _: impl FnMut(Root<P::Scalar>, &mut Work),
+        _: impl FnMut(Root<P::Parameter>, &mut Work),
     ) -> Result<(), Limit> {
         Ok(())
     }
@@ -57,10 +57,10 @@ impl<P: Point> Fallback<P> for ClipRoom<'_, P> {
         &mut self,
         surface: &Surface<'_, P>,
         planes: &Planes<P::Scalar>,
-        region: Region<P::Scalar>,
+        region: Region<P::Parameter>,
         limits: &Limits<P::Scalar>,
         work: &mut Work,
-        mut found: impl FnMut(Root<P::Scalar>, &mut Work),
+        mut found: impl FnMut(Root<P::Parameter>, &mut Work),
     ) -> Result<(), Limit> {
         let mut clipper = Clipper { surface, planes, limits, room: self };
         clipper.project()?;

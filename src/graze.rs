@@ -10,9 +10,11 @@
 use crate::bernstein::{BasisView, Degrees, Full};
 use crate::clip::{Noise, corners};
 use crate::limits::Limit;
-use crate::local::noise;
+use crate::local::Exactness;
+use crate::parameter::Parameter;
 use crate::planes::Planes;
 use crate::point::{Flat, Point};
+use crate::ray::Incidence;
 use crate::region::Region;
 use crate::root::Place;
 use crate::scalar::Scalar;
@@ -45,75 +47,89 @@ pub(crate) fn across<F: Flat>(degrees: Degrees, net: &[F], noise: &Noise<F::Scal
     let [x, y] = [x / largest, y / largest];
     let length = (x * x + y * y).sqrt();
     let along = [x / length, y / length];
-    let (mut low, mut high) = (F::Scalar::INFINITY, F::Scalar::LEAST);
-    for point in net {
-        let [f, g] = point.f_g();
-        let distance = g * along[0] - f * along[1];
-        (low, high) = (low.lesser(distance), high.greater(distance));
-    }
     let error = noise.error * (along[0].abs() + along[1].abs());
-    if low > error || high < -error {
+    let (mut low, mut high, mut thin) = (F::Scalar::INFINITY, F::Scalar::LEAST, true);
+    for point in net {
+        let ([f, g], off) = (point.f_g(), error * point.weight());
+        let distance = g * along[0] - f * along[1];
+        (low, high) = (low.lesser(distance - off), high.greater(distance + off));
+        // Not the tolerance, within which a cubic contact still is one root and no other.
+        thin &= distance.abs() <= off * F::Scalar::from_u32(3);
+    }
+    if low > F::Scalar::ZERO || high < F::Scalar::ZERO {
         return Across::Apart;
     }
-    // Not the tolerance, within which a cubic contact still is one root and no other.
-    if high - low <= error * F::Scalar::from_u32(4) && is_steady(degrees.columns(), net, along, noise) {
-        return Across::Line(along);
-    }
-    Across::Open
+    if thin && is_steady(degrees.columns(), net, along, noise) { Across::Line(along) } else { Across::Open }
 }
 
 /// Whether the distances along a unit vector grow, or fall, from each point of a net to the next in u, or in v, by more than
 /// rounding. A net that is a line may be a root in one parameter alone, with others beside it.
 fn is_steady<F: Flat>(columns: usize, net: &[F], [x, y]: [F::Scalar; 2], noise: &Noise<F::Scalar>) -> bool {
-    let error = noise.error * F::Scalar::TWO * (x.abs() + y.abs());
+    let error = noise.error * (x.abs() + y.abs());
     let extent = |[low, high]: [F::Scalar; 2], (&p, &q): (&F, &F)| {
-        let [f, g] = (q - p).f_g();
+        let ([f, g], off) = ((q - p).f_g(), error * (p.weight() + q.weight()));
         let step = f * x + g * y;
-        [low.lesser(step), high.greater(step)]
+        [low.lesser(step - off), high.greater(step + off)]
     };
     let none = [F::Scalar::INFINITY, F::Scalar::LEAST];
     let along_u = net.iter().zip(net.iter().skip(columns)).fold(none, extent);
     let rows = net.chunks_exact(columns);
     let along_v = rows.fold(none, |both, row| row.iter().zip(row.iter().skip(1)).fold(both, extent));
-    [along_u, along_v].iter().any(|[low, high]| *low > error || *high < -error)
+    [along_u, along_v].iter().any(|[low, high]| *low > F::Scalar::ZERO || *high < F::Scalar::ZERO)
 }
 
 /// How far the points of a region that can be told no closer pass the ray at most, by the measure of
-/// [`Local::distance`](crate::newton::Local::distance).
+/// [`Local::distance`](crate::local::Local::distance). `error` is that of the region's net.
 #[inline(always)]
-pub(crate) fn allowed<S: Scalar>(tolerance: S, error: S) -> S {
-    tolerance * S::TWO + error * S::from_u32(16) + noise()
+pub(crate) fn allowed<S: Scalar>(exact: &Exactness<S>, error: S) -> S {
+    // A region is settled when its points are within four errors of a line through the ray.
+    exact.allowed() + error * S::from_u32(4)
 }
 
-/// Of some places the one that the ray meets first, in its interval if one is; `None` if it passes all of them by more than
-/// is allowed. The tolerance and the error are those of points.
+/// A place on the ray, and what the ray does there at least.
+pub(crate) struct Met<A: Parameter> {
+    pub(crate) place: Place<A>,
+    pub(crate) incidence: Incidence,
+}
+
+/// Of some places of a region whose points all are on the ray, or on a line in the surface that is, the one that the ray meets
+/// first, in its interval if one is; `None` if it passes all of them by more than is allowed. The error is that of points.
 pub(crate) fn first_met<P: Point, const N: usize>(
     surface: &Surface<'_, P>,
     planes: &Planes<P::Scalar>,
-    places: [Place<P::Scalar>; N],
-    [tolerance, error]: [P::Scalar; 2],
+    places: [Place<P::Parameter>; N],
+    exact: &Exactness<P::Scalar>,
+    error: P::Scalar,
     basis: &mut BasisView<'_, P::Scalar>,
-) -> Result<Option<Place<P::Scalar>>, Limit> {
-    let allowed = allowed(tolerance, error);
-    let rounding = error * P::Scalar::from_u32(4) + noise();
+) -> Result<Option<Met<P::Parameter>>, Limit> {
+    let allowed = allowed(exact, error);
+    let rounding = error * P::Scalar::from_u32(4) + planes.noise();
     // In order of worth: whether it lies before the interval, or is held by no more than its net's error; whether it passes the
     // ray by more than rounding, as where the surface leaves the ray slowly all within the tolerance; and its depth.
     let mut least = None;
     let mut best = None;
+    let (mut nearest, mut farthest) = (P::Scalar::INFINITY, P::Scalar::LEAST);
     for place in places {
         let distance = place.local.distance();
         if !(distance <= allowed) {
             continue;
         }
         let depth = planes.depth_on(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
-        let far = distance > tolerance * P::Scalar::TWO + noise::<P::Scalar>();
+        (nearest, farthest) = (nearest.lesser(depth), farthest.greater(depth));
+        let far = distance > exact.allowed();
         let faults = [planes.is_before_interval(depth), far, distance > rounding];
         if least.is_none_or(|least| (faults, depth) < least) {
             (least, best) = (Some((faults, depth)), Some(place));
         }
     }
-    Ok(best)
+    let contact = farthest - nearest > exact.size * P::Scalar::from_f64(CONTACT);
+    let incidence = if contact { Incidence::Contact } else { Incidence::Crossing };
+    Ok(best.map(|place| Met { place, incidence }))
 }
+
+/// A ray is in contact with a surface along a stretch longer than this share of the surface's size. Where it is shorter, it is
+/// that of a tangent to a curved surface, which rounding does not part from the surface at once.
+pub(crate) const CONTACT: f64 = 1.0 / 64.0;
 
 /// The place that a few of Newton's steps lead to from a point of a region, as long as each brings the ray nearer: no farther
 /// from the region than [`REACH`] times its width. A root that lies beside the region, and is found from there too, is a better
@@ -121,15 +137,16 @@ pub(crate) fn first_met<P: Point, const N: usize>(
 pub(crate) fn polished<P: Point>(
     surface: &Surface<'_, P>,
     whole: &[P::Flat],
-    region: &Region<P::Scalar>,
-    at: [P::Scalar; 2],
+    region: &Region<P::Parameter>,
+    at: [P::Parameter; 2],
+    exact: &Exactness<P::Scalar>,
     basis: &mut BasisView<'_, P::Scalar>,
-) -> Result<Place<P::Scalar>, Limit> {
+) -> Result<Place<P::Parameter>, Limit> {
     let around = region.sides.map(|[low, high]| {
-        let reach = (high - low) * P::Scalar::from_u32(REACH);
-        [P::Scalar::ZERO.greater(low - reach), P::Scalar::ONE.lesser(high + reach)]
+        let reach = high.minus(low) * P::Scalar::from_u32(REACH);
+        [low.plus(-reach).later(P::Parameter::ZERO), high.plus(reach).earlier(P::Parameter::ONE)]
     });
-    Place::polished(at, around, surface.net.degrees(), whole, basis)
+    Place::polished(at, around, surface.net.degrees(), whole, exact, basis)
 }
 
 /// See [`polished`]. Less leaves more of the roots of cubic contact a third of the digits; more may lead to another root, and
@@ -139,6 +156,9 @@ const REACH: u32 = 8;
 /// Steps toward the line's zero: of a region small enough to be seen as a line the first is all but exact.
 const STEPS: u32 = 3;
 
+/// Where a line leaves a region, and by which of its sides, of u or of v, if by one.
+type End<A> = ([A; 2], Option<(bool, A)>);
+
 /// Of a region that is seen as a line along `along`, the place on the ray that it meets first: the middle of the part of the
 /// region that is on the ray, or one of its ends. `None` if the ray passes by, or a part of the region has to be looked at.
 #[cold]
@@ -147,72 +167,98 @@ pub(crate) fn on_line<P: Point>(
     surface: &Surface<'_, P>,
     planes: &Planes<P::Scalar>,
     whole: &[P::Flat],
-    region: &Region<P::Scalar>,
+    region: &Region<P::Parameter>,
     along: [P::Scalar; 2],
-    within: [P::Scalar; 2],
+    exact: &Exactness<P::Scalar>,
+    error: P::Scalar,
     basis: &mut BasisView<'_, P::Scalar>,
-) -> Result<Option<Place<P::Scalar>>, Limit> {
+) -> Result<Option<Met<P::Parameter>>, Limit> {
     let mut look = |at| Place::look(at, surface.net.degrees(), whole, basis);
     let widths = region.widths();
-    // The shortest way to where the distance along the line is 0, in shares of the region's widths; and how that distance grows.
-    let toward = |place: &Place<P::Scalar>| {
+    // The distance along the line, and how it grows with shares of the region's widths.
+    let slope = |place: &Place<P::Parameter>| {
         let (off, grows) = place.local.seen_along(along);
-        let grows = [grows[0] * widths[0], grows[1] * widths[1]];
-        let square = grows[0] * grows[0] + grows[1] * grows[1];
-        (square > P::Scalar::ZERO).then(|| (grows, grows.map(|c| -off * c / square)))
+        (off, [grows[0] * widths[0], grows[1] * widths[1]])
     };
-    let moved =
-        |at: [P::Scalar; 2], [du, dv]: [P::Scalar; 2]| region.nearest([at[0] + du * widths[0], at[1] + dv * widths[1]]);
+    let moved = |at: [P::Parameter; 2], [du, dv]: [P::Scalar; 2]| {
+        region.nearest([at[0].plus(du * widths[0]), at[1].plus(dv * widths[1])])
+    };
     let mut middle = look(region.middle())?;
     let mut grows = [P::Scalar::ZERO; 2];
     for _ in 0..STEPS {
-        let Some((slope, step)) = toward(&middle) else { break };
-        grows = slope;
-        middle = look(moved(middle.at, step))?;
+        // The shortest way to where the distance is 0.
+        let (off, by) = slope(&middle);
+        let square = by[0] * by[0] + by[1] * by[1];
+        if !(square > P::Scalar::ZERO) {
+            break;
+        }
+        grows = by;
+        middle = look(moved(middle.at, by.map(|c| -off * c / square)))?;
     }
-    // Where the line of zero leaves the region: as far along it as its widths go, and back onto it.
+    // Where the line of zero leaves the region: as far along it as its widths go, and then along the side that was come to.
     let steepest = grows[0].abs().greater(grows[1].abs());
-    let mut ends = [middle.at; 2];
+    let mut ends = [(middle.at, None); 2];
     if steepest > P::Scalar::ZERO {
         let [a, b] = grows.map(|c| c / steepest);
         for (end, way) in ends.iter_mut().zip([[-b, a], [b, -a]]) {
-            let mut share = P::Scalar::ONE;
+            let (mut share, mut side) = (P::Scalar::ONE, None);
             for k in 0..2 {
                 let [low, high] = region.sides[k];
                 let (from, by) = (middle.at[k], way[k] * widths[k]);
-                let room = if by > P::Scalar::ZERO { high - from } else { from - low };
+                let forward = by > P::Scalar::ZERO;
+                let room = if forward { high.minus(from) } else { from.minus(low) };
                 if room < by.abs() * share {
-                    share = room / by.abs();
+                    (share, side) = (room / by.abs(), Some((k == 1, if forward { high } else { low })));
                 }
             }
-            *end = moved(middle.at, way.map(|c| c * share));
+            *end = (moved(middle.at, way.map(|c| c * share)), side);
         }
     }
-    let mut places = [look(ends[0])?, look(ends[1])?];
-    for place in &mut places {
-        for _ in 0..STEPS {
-            if let Some((_, step)) = toward(place) {
-                *place = look(moved(place.at, step))?;
+    let mut reached = |(mut at, side): End<P::Parameter>| {
+        let Some((mut fixed, on_side)) = side else { return look(at) };
+        at[usize::from(fixed)] = on_side;
+        let mut place = look(at)?;
+        for _ in 0..2 * STEPS {
+            // Which parameter is free, as a number that is no more than 1 for all to see.
+            let (free, (off, by)) = (usize::from(!fixed), slope(&place));
+            let step = -off / by[free] * widths[free];
+            if off == P::Scalar::ZERO || !step.is_finite() {
+                break;
             }
+            let next = place.at[free].plus(step);
+            let mut at = place.at;
+            at[free] = next.held(region.sides[free][0], region.sides[free][1]);
+            // Past the corner the line leaves by the other side.
+            if at[free] != next {
+                fixed = !fixed;
+            }
+            place = look(at)?;
         }
-    }
+        Ok(place)
+    };
+    let [first, second] = [reached(ends[0])?, reached(ends[1])?];
     // A region may be thin alone, with a root like any other: then Newton's method comes nearer to it, and the ends do not.
-    let middle = polished(surface, whole, region, middle.at, basis)?;
-    let [first, second] = places;
+    let middle = polished(surface, whole, region, middle.at, exact, basis)?;
     // Of a line that may reach into the interval from outside, a smaller part has to be looked at.
-    let [tolerance, error] = within;
     let (mut inside, mut before, mut behind) = (false, false, false);
+    let mut known = true;
     for place in [&middle, &first, &second] {
         let depth = planes.depth_on(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
-        let unknown = !(place.local.distance() <= allowed(tolerance, error));
+        let unknown = !(place.local.distance() <= allowed(exact, error));
+        known &= !unknown;
         inside |= !unknown && planes.t_in_interval(depth).is_some();
         before |= unknown || planes.is_before_interval(depth);
         behind |= unknown || !planes.is_before_interval(depth);
     }
-    if !inside && before && behind {
+    // Likewise of one that the ray follows, if its ends are not found, since it is bent; or if it begins before the interval and
+    // goes on in it, and so is met where the interval begins.
+    let followed = middle.local.may_be_singular(exact.reach) && region.is_divisible();
+    if (!inside && before && behind) || (followed && (!known || (inside && before))) {
         return Ok(None);
     }
-    first_met(surface, planes, [middle, first, second], within, basis)
+    let met = first_met(surface, planes, [middle, first, second], exact, error, basis)?;
+    // Roots that cannot be told apart are one that grazes.
+    Ok(met.map(|met| Met { incidence: met.incidence.max(Incidence::Grazing), ..met }))
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@
 //! let tree = TreeMemory { nodes: &mut nodes, links: &mut links };
 //! let options = Subdivision { flatness: 0.01, ..Subdivision::default() };
 //! let mut scratch = SubdivideScratch::<_, 4>::new();
-//! let (patches, tree) = subdivide(scene.nets(), scene.frame(), &options, &mut scratch.view(), memory, Some(tree))?;
+//! let (patches, tree) = subdivide(scene.surfaces(), scene.frame(), &options, &mut scratch.view(), memory, Some(tree))?;
 //! let tree = tree.expect("asked for");
 //!
 //! let ray = scene.ray([0.25, 0.5, 3.0], [0.0, 0.0, -1.0])?;
@@ -72,6 +72,8 @@ pub mod ray;
 pub mod limits;
 
 pub mod arena;
+
+pub mod parameter;
 
 pub mod bernstein;
 pub mod casteljau;

@@ -2,7 +2,9 @@
 //!
 //! [`Limits`] holds two kinds of numbers. *Parameters* shape an algorithm (how many Newton iterations a start may take);
 //! reaching one is part of the algorithm. *Budgets* bound a counter of [`Work`] over one call, that is one ray through the
-//! whole scene; reaching one ends the call with [`GaveUp`], which is neither a hit nor a miss.
+//! whole scene; reaching one ends the call with [`GaveUp`], which is neither a hit nor a miss. Only a method with coherence memory
+//! may come to twice a budget: where the search that memory led runs out, the ray is searched without memory, by budgets of its
+//! own, so that it is answered wherever the original method answers it.
 
 use crate::ray::Hit;
 use crate::scalar::Scalar;
@@ -35,8 +37,9 @@ pub struct Limits<S> {
     pub newton_starts: u32,
     /// Parameter: how often one Newton step may be halved because the residual grew. 0 is the undamped method.
     pub newton_halvings: u32,
-    /// Parameter: how far from the ray a root may lie, relative to the scene's frame (coordinates below 1). Smaller costs
-    /// up to one more evaluation or clip per root; below some 8 roundings roots are refused for noise.
+    /// Parameter: how far from the ray a root may lie, as a share of its surface's size (the longest side of its control points'
+    /// box); never below what rounding of the surface's coordinates, and of the ray's near it, leaves. Larger saves an
+    /// evaluation or a clip of some roots; what else stands in the scene changes nothing.
     pub tolerance: S,
     /// Parameter: the factor f in eq. (1), read as tan α > f · b/h; the paper's is 1. Smaller flags more rays as critical,
     /// which costs time and loses fewer double roots.
@@ -142,6 +145,13 @@ impl<S: Scalar> Limits<S> {
 
     /// The most work one call can do under these limits, whatever the ray, in a scene of this extent.
     pub fn worst_case(&self, extent: &Extent) -> Work {
+        let search = self.worst_search(extent);
+        // A search that memory led is begun anew without it where it runs out.
+        if extent.walks > 1 { search.plus(&search) } else { search }
+    }
+
+    /// The same of one search.
+    fn worst_search(&self, extent: &Extent) -> Work {
         // In each walk a view's clipping method may go through what the ray meets once more, where a fold is all but touched.
         let walks = extent.walks.max(1);
         let walks = if extent.clipped && extent.spans > 0 { walks.saturating_mul(2) } else { walks };
@@ -208,6 +218,11 @@ macro_rules! counters {
             /// The counters.
             pub fn counts(&self) -> [u32; Work::COUNT] {
                 [$(self.$name),*]
+            }
+
+            /// These and others together.
+            pub(crate) fn plus(&self, other: &Work) -> Work {
+                Work { $($name: self.$name.saturating_add(other.$name)),* }
             }
 
             /// What was counted since the counters were these: of one ray, where they go on from ray to ray.

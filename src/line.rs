@@ -231,7 +231,7 @@ impl<'m, S: Scalar> Line<'m, S> {
             &InLine<'_, S>,
             &Limits<S>,
             &mut Work,
-        ) -> Result<Option<Root<S>>, Limit>,
+        ) -> Result<Option<Root<P::Parameter>>, Limit>,
     ) -> Result<Option<Hit<S>>, GaveUp<S>> {
         let before = work.spans_visited;
         match self.nearby(view.patches(), ray, limits, work) {

@@ -2,30 +2,88 @@
 
 use crate::bernstein::{self, BasisView, Degrees, Full};
 use crate::limits::{Limit, Limits, Work, spend};
+use crate::parameter::Parameter;
+use crate::planes::Planes;
 use crate::point::{Flat, Point};
 use crate::scalar::Scalar;
 use crate::story::Event;
+use crate::surface::{Shape, Surface};
+
+/// How exactly one ray can meet one surface: lengths in the frame, as [`Local::distance`] measures them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exactness<S> {
+    /// How far from the ray a root may lie.
+    pub(crate) tolerance: S,
+    /// What rounding alone may make of the distance between the ray and a point of the surface.
+    pub(crate) rounding: S,
+    /// The longest side of the surface's box.
+    pub(crate) size: S,
+    /// Bounds the coordinates, of the surface and of the ray near it.
+    pub(crate) reach: S,
+}
+
+impl<S: Scalar> Exactness<S> {
+    /// Of a ray and a surface: to the share of the surface's size that `limits` say, and not below what rounding of its coordinates
+    /// and of the ray's leaves.
+    #[inline(always)]
+    pub(crate) fn of<P: Point<Scalar = S>>(surface: &Surface<'_, P>, planes: &Planes<S>, limits: &Limits<S>) -> Self {
+        let (Degrees { u, v }, Shape { size, .. }) = (surface.net.degrees(), surface.shape);
+        // Of the projection, and of the sums of products of which evaluation consists.
+        let roundings = S::from_u32(8 + u32::from(u) + u32::from(v));
+        Exactness {
+            tolerance: (limits.tolerance * size).greater(planes.noise()),
+            rounding: S::EPSILON * roundings * planes.reach(),
+            size,
+            reach: planes.reach(),
+        }
+    }
+
+    /// The sine below which an angle between ray and surface makes a hit grazing.
+    #[inline(always)]
+    pub(crate) fn graze(&self) -> S {
+        (self.tolerance / self.size).sqrt() * S::from_u32(4)
+    }
+
+    /// By how much a point of the projected net may be off: some three roundings of numbers below 4 times the coordinates; twice that,
+    /// so that an edge which two surfaces share but for its last bits is lost by neither. The sides of regions round, too, and a
+    /// rational surface may move by its degree in roundings where a parameter moves by one.
+    #[inline(always)]
+    pub(crate) fn of_net<F: Flat<Scalar = S>>(&self, degrees: Degrees) -> S {
+        let both = u32::from(degrees.u) + u32::from(degrees.v);
+        let roundings = if F::RATIONAL { 8 + 4 * both } else { both.max(8) };
+        S::EPSILON * S::from_u32(roundings) * self.reach
+    }
+
+    /// How far a point may be from the ray, and the ray still meet the surface there: of a ray between two surfaces that share an
+    /// edge each finds the point on its own side of the edge, or beyond it by what rounding may have done.
+    #[inline(always)]
+    pub(crate) fn allowed(&self) -> S {
+        self.tolerance + self.rounding
+    }
+}
 
 /// The projected surface near a point, to first order: what one step of Newton's method is made of.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Local<S> {
+pub(crate) struct Local<A: Parameter> {
     /// (u, v) of the point.
-    pub(crate) at: [S; 2],
-    f_g: [S; 2],
-    du: [S; 2],
-    dv: [S; 2],
-    determinant: S,
+    pub(crate) at: [A; 2],
+    f_g: [A::Scalar; 2],
+    du: [A::Scalar; 2],
+    dv: [A::Scalar; 2],
+    determinant: A::Scalar,
     /// The product of the derivatives' lengths.
-    size: S,
+    size: A::Scalar,
     /// The weight at the point: all else is multiplied by it.
-    pub(crate) weight: S,
+    pub(crate) weight: A::Scalar,
+    /// The weight's derivatives; 0 without weights.
+    slopes: [A::Scalar; 2],
 }
 
-impl<S: Scalar> Local<S> {
+impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
     /// Of a projected net, at (u, v).
     #[inline(always)]
-    pub(crate) fn at<F: Flat<Scalar = S>>(
-        at: [S; 2],
+    pub(crate) fn at<F: Flat<Scalar = S, Parameter = A>>(
+        at: [A; 2],
         degrees: Degrees,
         net: &[F],
         basis: &mut BasisView<'_, S>,
@@ -34,13 +92,15 @@ impl<S: Scalar> Local<S> {
         let (f_g, [fu, gu], [fv, gv]) = (jet.point.f_g(), jet.du.f_g(), jet.dv.f_g());
         let determinant = fu * gv - gu * fv;
         let size = (fu.abs() + gu.abs()) * (fv.abs() + gv.abs());
-        Ok(Local { at, f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight: jet.point.weight() })
+        // Of a point without weight that is constant.
+        let slopes = if F::RATIONAL { [jet.du.weight(), jet.dv.weight()] } else { [S::ZERO; 2] };
+        Ok(Local { at, f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight: jet.point.weight(), slopes })
     }
 
     /// The same as a step of Newton's method: counted, and told.
     #[inline(always)]
-    pub(crate) fn step_at<F: Flat<Scalar = S>>(
-        at: [S; 2],
+    pub(crate) fn step_at<F: Flat<Scalar = S, Parameter = A>>(
+        at: [A; 2],
         degrees: Degrees,
         net: &[F],
         basis: &mut BasisView<'_, S>,
@@ -49,7 +109,7 @@ impl<S: Scalar> Local<S> {
     ) -> Result<Self, Limit> {
         spend(&mut work.newton_steps, limits.newton_steps, Limit::NewtonSteps)?;
         let local = Local::at(at, degrees, net, basis)?;
-        S::tell(|| Event::Step { at: at.map(S::to_f64), residual: local.distance().to_f64() });
+        S::tell(|| Event::Step { at: at.map(|c| c.number().to_f64()), residual: local.distance().to_f64() });
         Ok(local)
     }
 
@@ -73,24 +133,26 @@ impl<S: Scalar> Local<S> {
         (along(self.f_g), [along(self.du), along(self.dv)])
     }
 
-    /// Whether the ray is tangent, from the derivatives of the depth; see [`Root::grazing`]. A pole has no tangent plane,
+    /// Whether the ray is tangent, from the derivatives of the depth; see [`Incidence`](crate::ray::Incidence). A pole has no tangent plane,
     /// and is not.
     #[inline(always)]
-    pub(crate) fn is_tangent(&self, [depth_u, depth_v]: [S; 2], tolerance: S) -> bool {
+    pub(crate) fn is_tangent(&self, [depth_u, depth_v]: [S; 2], exact: &Exactness<S>) -> bool {
         // The surface's normal in the system of the two planes and depth, in which the ray is (0, 0, 1).
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let normal = [gu * depth_v - depth_u * gv, depth_u * fv - fu * depth_v, self.determinant];
         let [a, b, c] = normal.map(S::abs);
-        c < sine(tolerance) * (a + b + c)
+        c < exact.graze() * (a + b + c)
     }
 
     /// Whether the ray is seen to be no tangent from f and g alone, which is true of most roots: the derivatives of depth are at
-    /// most the degrees times twice the coordinates' `reach`.
+    /// most the degrees times twice the coordinates' reach. (Of a rational surface both its parts, numerator and weight, are bounded
+    /// apart.)
     #[inline(always)]
-    pub(crate) fn is_steep(&self, degrees: Degrees, reach: S, tolerance: S) -> bool {
-        let [deepest_u, deepest_v] = [degrees.u, degrees.v].map(|n| S::from_u32(2 * u32::from(n)) * reach);
+    pub(crate) fn is_steep<F: Flat<Scalar = S, Parameter = A>>(&self, degrees: Degrees, exact: &Exactness<S>) -> bool {
+        let twice = if F::RATIONAL { 8 } else { 2 };
+        let [deepest_u, deepest_v] = [degrees.u, degrees.v].map(|n| S::from_u32(twice * u32::from(n)) * exact.reach);
         let ([fu, gu], [fv, gv], c) = (self.du, self.dv, self.determinant.abs());
-        c >= sine(tolerance) * ((fu.abs() + gu.abs()) * deepest_v + (fv.abs() + gv.abs()) * deepest_u + c)
+        c >= exact.graze() * ((fu.abs() + gu.abs()) * deepest_v + (fv.abs() + gv.abs()) * deepest_u + c)
     }
 
     /// The step to where both distances would be 0; `None` if the Jacobian is singular to working precision.
@@ -104,33 +166,53 @@ impl<S: Scalar> Local<S> {
         Some([(fv * g - gv * f) * inverse, (gu * f - fu * g) * inverse])
     }
 
-    /// Whether rounding alone may make the determinant what it is: each of its four factors is off by some roundings of
-    /// coordinates below 2 times the weight, not of its own size.
+    /// Whether the Jacobian's determinant is below 0.
     #[inline(always)]
-    pub(crate) fn may_be_singular(&self) -> bool {
+    pub(crate) fn is_turned(&self) -> bool {
+        self.determinant < S::ZERO
+    }
+
+    /// Whether rounding alone may make the determinant what it is: each of its four factors is off by some roundings of
+    /// coordinates below twice `reach` times the weight, not of its own size.
+    #[inline(always)]
+    pub(crate) fn may_be_singular(&self, reach: S) -> bool {
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let lengths = fu.abs() + gu.abs() + (fv.abs() + gv.abs());
-        !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * lengths * self.weight)
+        !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * reach * lengths * self.weight)
+    }
+
+    /// The least weight that a surface may have no farther from here than by this step, or 0: to first order, and half of that.
+    #[inline(always)]
+    pub(crate) fn lightest<F: Flat<Scalar = S, Parameter = A>>(&self, [du, dv]: [S; 2]) -> S {
+        if !F::RATIONAL {
+            return S::ONE;
+        }
+        let [by_u, by_v] = self.slopes;
+        (self.weight - (by_u * du).abs() - (by_v * dv).abs()).greater(S::ZERO) * S::HALF
     }
 
     /// Whether the step leads to within the tolerance as far as rounding is concerned, of which Taylor's theorem says nothing:
     /// the determinant's share of it, see [`Local::may_be_singular`], is one of the step, and so of the residual. Of a flat net
     /// seen edge on all of the determinant may be rounding.
     #[inline(always)]
-    pub(crate) fn is_regular_enough<P: Point<Scalar = S>>(&self, tolerance: S) -> bool {
+    pub(crate) fn is_regular_enough<F: Flat<Scalar = S, Parameter = A>>(
+        &self,
+        step: [S; 2],
+        exact: &Exactness<S>,
+    ) -> bool {
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let lengths = fu.abs() + gu.abs() + (fv.abs() + gv.abs());
+        let rounding = S::EPSILON * S::from_u32(32) * exact.reach;
         // Distances are residuals over the weight, which may fall along the step.
-        let falls = if P::RATIONAL { S::from_u32(16) } else { S::ONE };
-        let rounding = S::EPSILON * S::from_u32(32) * falls;
-        self.residual() * rounding * lengths <= (tolerance + noise()) * self.determinant.abs()
+        let (here, there) = if F::RATIONAL { (self.weight, self.lightest::<F>(step)) } else { (S::ONE, S::ONE) };
+        self.residual() * rounding * lengths * here <= exact.allowed() * self.determinant.abs() * there
     }
 
     /// How fast the root moves, in u and in v, if the ray's slopes change as fast as each of these: f and g at a fixed place on
     /// the surface then change by that times the distance from the eye.
     #[inline(always)]
-    pub(crate) fn rates(&self, distance: S, slopes: [[S; 2]; 2]) -> Option<[[S; 2]; 2]> {
-        if self.may_be_singular() {
+    pub(crate) fn rates(&self, reach: S, distance: S, slopes: [[S; 2]; 2]) -> Option<[[S; 2]; 2]> {
+        if self.may_be_singular(reach) {
             return None;
         }
         let share = distance * self.weight / self.determinant;
@@ -152,22 +234,9 @@ impl<S: Scalar> Local<S> {
     /// Whether a root may be held back by `off`, in u and v, from where the step leads: not judged by parameters, but by how
     /// far the ray sees the point move.
     #[inline(always)]
-    pub(crate) fn may_hold(&self, off: [S; 2], tolerance: S) -> bool {
+    pub(crate) fn may_hold(&self, off: [S; 2], exact: &Exactness<S>) -> bool {
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let moved = off[0].abs() * (fu.abs() + gu.abs()) + off[1].abs() * (fv.abs() + gv.abs());
-        moved <= (tolerance + noise()) * S::TWO * self.weight
+        moved <= exact.allowed() * self.weight
     }
-}
-
-/// The sine below which an angle between ray and surface makes a hit grazing. Of a tolerance below rounding it is that of
-/// rounding: what a Jacobian of nothing but roundings says is no angle.
-#[inline(always)]
-fn sine<S: Scalar>(tolerance: S) -> S {
-    tolerance.greater(noise()).sqrt() * S::from_u32(4)
-}
-
-/// Residuals up to this, in the frame, are rounding of the evaluation: a few sums of numbers below 1.
-#[inline(always)]
-pub(crate) fn noise<S: Scalar>() -> S {
-    S::EPSILON * S::TWO
 }

@@ -9,7 +9,8 @@
 
 use crate::bernstein::{BasisView, Full};
 use crate::limits::{Limit, Limits, Work};
-use crate::local::{Local, noise};
+use crate::local::{Exactness, Local};
+use crate::parameter::Parameter;
 use crate::planes::{Planes, project_net};
 use crate::point::Point;
 use crate::root::{Place, Root};
@@ -19,7 +20,7 @@ use crate::surface::Surface;
 use heapless::vec::VecView;
 
 /// A root, and the surface near it to first order.
-type Followed<S> = (Root<S>, Local<S>);
+type Followed<A> = (Root<A>, Local<A>);
 
 /// One ray and one surface.
 #[derive(Debug)]
@@ -30,6 +31,8 @@ pub struct Solver<'a, 's, 'm, P: Point> {
     pub planes: &'a Planes<P::Scalar>,
     /// Bounds on the work.
     pub limits: &'a Limits<P::Scalar>,
+    /// How exactly they can meet.
+    pub(crate) exact: Exactness<P::Scalar>,
     /// Room for the projected net.
     pub(crate) flat: &'a mut VecView<P::Flat>,
     pub(crate) basis: &'a mut BasisView<'s, P::Scalar>,
@@ -61,13 +64,14 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         flat: &'a mut VecView<P::Flat>,
         basis: &'a mut BasisView<'s, P::Scalar>,
     ) -> Self {
-        Solver { surface: *surface, planes, limits, flat, basis, projected: false, decided: Decided::Nothing }
+        let exact = Exactness::of(surface, planes, limits);
+        Solver { surface: *surface, planes, limits, exact, flat, basis, projected: false, decided: Decided::Nothing }
     }
 
     /// Solves from `start`; `None` if the iteration leads to no root, which does not prove that there is none.
     ///
     /// The iteration may leave the patch that gave the start: it works on the whole surface.
-    pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+    pub fn solve(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Root<P::Parameter>>, Limit> {
         match self.iterate(start, work)? {
             Some(place) => self.root(&place).map(Some),
             None => {
@@ -83,7 +87,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         &mut self,
         start: [P::Scalar; 2],
         work: &mut Work,
-    ) -> Result<Option<Followed<P::Scalar>>, Limit> {
+    ) -> Result<Option<Followed<P::Parameter>>, Limit> {
         match self.iterate(start, work)? {
             Some(place) => Ok(Some((self.root(&place)?, place.local))),
             None => {
@@ -95,13 +99,13 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
 
     /// The root at a place that the iteration came to.
     #[inline(always)]
-    fn root(&mut self, place: &Place<P::Scalar>) -> Result<Root<P::Scalar>, Limit> {
+    fn root(&mut self, place: &Place<P::Parameter>) -> Result<Root<P::Parameter>, Limit> {
         let flat = self.flat.get(..self.surface.net.points().len()).ok_or(Limit::Scratch)?;
-        place.root(&self.surface.net, flat, self.planes, self.limits, self.basis)
+        place.root(&self.surface.net, flat, self.planes, &self.exact, self.basis)
     }
 
     /// The surface at (u, v) to first order.
-    pub(crate) fn local(&mut self, at: [P::Scalar; 2], work: &mut Work) -> Result<Local<P::Scalar>, Limit> {
+    pub(crate) fn local(&mut self, at: [P::Parameter; 2], work: &mut Work) -> Result<Local<P::Parameter>, Limit> {
         self.project()?;
         let flat = self.flat.get(..self.surface.net.points().len()).ok_or(Limit::Scratch)?;
         Local::step_at(at, self.surface.net.degrees(), flat, self.basis, self.limits, work)
@@ -123,32 +127,35 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         if self.surface.number != surface.number {
             P::Scalar::tell(|| Event::Surface(surface.number));
             (self.surface, self.projected, self.decided) = (*surface, false, Decided::Nothing);
+            self.exact = Exactness::of(surface, self.planes, self.limits);
         }
     }
 
     /// Where the iteration comes to.
     #[inline(always)]
-    fn iterate(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Place<P::Scalar>>, Limit> {
-        let (zero, one) = (P::Scalar::ZERO, P::Scalar::ONE);
+    fn iterate(&mut self, start: [P::Scalar; 2], work: &mut Work) -> Result<Option<Place<P::Parameter>>, Limit> {
+        let zero = P::Scalar::ZERO;
+        let held = |at: [P::Parameter; 2]| at.map(|t| t.held(P::Parameter::ZERO, P::Parameter::ONE));
         self.project()?;
-        let (surface, limits) = (&self.surface, self.limits);
+        let (surface, limits, exact) = (&self.surface, self.limits, &self.exact);
+        let noise = self.planes.noise();
         let flat = self.flat.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
         work.newton_starts += 1;
-        let [mut u, mut v] = start.map(|t| t.clamped(zero, one));
-        P::Scalar::tell(|| Event::Start([u.to_f64(), v.to_f64()]));
-        let (mut from_u, mut from_v) = (u, v);
-        let (mut step_u, mut step_v) = (zero, zero);
+        let mut at = held(start.map(P::Parameter::new));
+        P::Scalar::tell(|| Event::Start(at.map(|t| t.number().to_f64())));
+        let mut from = at;
+        let mut step = [zero; 2];
         let mut last = P::Scalar::INFINITY;
         let mut halvings = 0;
         let mut beyond_before = P::Scalar::INFINITY;
         let mut at_edge = false;
         // Ends: a fixed number of evaluations.
         for _ in 0..limits.newton_iterations {
-            let local = Local::step_at([u, v], surface.net.degrees(), flat, self.basis, limits, work)?;
+            let local = Local::step_at(at, surface.net.degrees(), flat, self.basis, limits, work)?;
             let residual = local.residual();
             // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
-            if residual <= noise::<P::Scalar>() * local.weight {
-                return Ok(Some(Place { at: [u, v], local }));
+            if residual <= noise * local.weight {
+                return Ok(Some(Place { at, local }));
             }
             // Damping. A NaN counts as growth.
             if !(residual < last) {
@@ -156,23 +163,25 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
                     return Ok(None);
                 }
                 halvings += 1;
-                (step_u, step_v) = (step_u * P::Scalar::HALF, step_v * P::Scalar::HALF);
-                (u, v) = (from_u + step_u, from_v + step_v);
+                step = step.map(|c| c * P::Scalar::HALF);
+                at = [from[0].plus(step[0]), from[1].plus(step[1])];
                 continue;
             }
             let Some([du, dv]) = local.step() else {
                 return Ok(None);
             };
-            let (next_u, next_v) = (u + du, v + dv);
-            let (held_u, held_v) = (next_u.clamped(zero, one), next_v.clamped(zero, one));
-            if surface.strays([du, dv]) <= limits.tolerance && local.is_regular_enough::<P>(limits.tolerance) {
+            let next = [at[0].plus(du), at[1].plus(dv)];
+            let on_surface = held(next);
+            let off = [next[0].minus(on_surface[0]), next[1].minus(on_surface[1])];
+            if surface.strays([du, dv]) <= exact.tolerance * local.lightest::<P::Flat>([du, dv])
+                && local.is_regular_enough::<P::Flat>([du, dv], exact)
+            {
                 // Converged; what is left to see is whether the root lies on the surface or beyond its edge. Of a root on
                 // an edge the step may leave as much on the far side as on the near: neighbours must not both refuse it. Toward
                 // an edge the weight may fall, by which distances grow: of what is held there it is to be looked at there.
-                let off = [next_u - held_u, next_v - held_v];
                 let seen = !P::RATIONAL || at_edge || off == [zero; 2];
-                if seen && local.may_hold(off, limits.tolerance) {
-                    return Ok(Some(Place { at: [held_u, held_v], local }));
+                if seen && local.may_hold(off, exact) {
+                    return Ok(Some(Place { at: on_surface, local }));
                 }
                 // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
                 // far along the surface: one more, from the edge, says on which side of it the root lies.
@@ -180,18 +189,18 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
                     return Ok(None);
                 }
                 at_edge = true;
-                (u, v, last) = (held_u, held_v, P::Scalar::INFINITY);
+                (at, last) = (on_surface, P::Scalar::INFINITY);
                 continue;
             }
             // An iterate outside is held at the edge, where a root may lie; one that goes on as far is leaving for good.
-            let beyond = (next_u - held_u).abs() + (next_v - held_v).abs();
+            let beyond = off[0].abs() + off[1].abs();
             if !(beyond + beyond <= beyond_before) {
                 return Ok(None);
             }
             beyond_before = if beyond > zero { beyond } else { P::Scalar::INFINITY };
-            (from_u, from_v, last, halvings) = (u, v, residual, 0);
-            (step_u, step_v) = (held_u - u, held_v - v);
-            (u, v) = (held_u, held_v);
+            (from, last, halvings) = (at, residual, 0);
+            step = [on_surface[0].minus(at[0]), on_surface[1].minus(at[1])];
+            at = on_surface;
         }
         Ok(None)
     }

@@ -3,6 +3,7 @@
 use crate::bernstein::{Degrees, Direction, Full};
 use crate::casteljau;
 use crate::clip::Noise;
+use crate::parameter::Parameter;
 use crate::point::Flat;
 use crate::region::Region;
 use crate::scalar::Scalar;
@@ -10,7 +11,7 @@ use heapless::vec::VecView;
 
 /// The net of a region, in lent room, and the region that it is of.
 pub(crate) struct Part<'a, F: Flat> {
-    pub(crate) region: Region<F::Scalar>,
+    pub(crate) region: Region<F::Parameter>,
     pub(crate) degrees: Degrees,
     pub(crate) net: &'a mut [F],
     /// A bound of the points' |f| and |g|.
@@ -42,30 +43,30 @@ impl<'a, F: Flat> Part<'a, F> {
         Ok(Some(Part { region: Region::WHOLE, degrees, net, reach, error, projected: error }))
     }
 
-    /// What to allow for when its coefficients are compared, all of them alike, with this much of tolerance for its points.
+    /// What to allow for when its coefficients are compared, with this much of tolerance for its points.
     #[inline(always)]
     pub(crate) fn noise(&self, tolerance: F::Scalar) -> Noise<F::Scalar> {
-        let [lightest, heaviest] = weights(self.net);
-        Noise { error: self.error * heaviest, tolerance: tolerance * lightest }
+        Noise { error: self.error, tolerance }
     }
 
     /// To a region of the surface: from what it is, if that holds it, else from the whole again.
-    pub(crate) fn become_region(&mut self, whole: &[F], region: Region<F::Scalar>) {
-        let holds = |outer: [F::Scalar; 2], inner: [F::Scalar; 2]| outer[0] <= inner[0] && inner[1] <= outer[1];
-        let old = self.region.sides;
-        let mut from = [[F::Scalar::ZERO, F::Scalar::ONE]; 2];
-        if holds(old[0], region.sides[0]) && holds(old[1], region.sides[1]) {
-            from = old;
+    pub(crate) fn become_region(&mut self, whole: &[F], region: Region<F::Parameter>) {
+        let mut from = Region::WHOLE;
+        if self.region.encloses(region.sides) {
+            from = self.region;
         } else {
             self.net.iter_mut().zip(whole).for_each(|(slot, &point)| *slot = point);
             (self.reach, self.error) = (reach(whole), self.projected);
         }
-        for (direction, (outer, inner)) in
-            [Direction::U, Direction::V].into_iter().zip(from.into_iter().zip(region.sides))
+        for (direction, ([low, high], inner)) in
+            [Direction::U, Direction::V].into_iter().zip(from.sides.into_iter().zip(region.sides))
         {
-            if outer != inner {
-                let width = outer[1] - outer[0];
-                self.restrict(direction, inner.map(|c| (c - outer[0]) / width));
+            if [low, high] != inner {
+                let inverse = F::Scalar::ONE / high.minus(low);
+                let share = |c: F::Parameter| {
+                    F::Parameter::ZERO.toward(F::Parameter::ONE, c.minus(low) * inverse, high.minus(c) * inverse)
+                };
+                self.restrict(direction, inner.map(share));
             }
         }
         self.region = region;
@@ -74,12 +75,12 @@ impl<'a, F: Flat> Part<'a, F> {
     /// To a part of itself, counted across it from 0 to 1.
     #[inline(always)]
     pub(crate) fn narrow(&mut self, direction: Direction, part: [F::Scalar; 2]) {
-        self.restrict(direction, part);
+        self.restrict(direction, part.map(F::Parameter::new));
         self.region.narrow(direction, part);
     }
 
     #[inline(always)]
-    fn restrict(&mut self, direction: Direction, part: [F::Scalar; 2]) {
+    fn restrict(&mut self, direction: Direction, part: [F::Parameter; 2]) {
         let degree = match direction {
             Direction::U => self.degrees.u,
             Direction::V => self.degrees.v,
@@ -94,31 +95,75 @@ impl<'a, F: Flat> Part<'a, F> {
         }
     }
 
-    /// The parameter along which the net is longer, as the ray sees it: by its longest step from one point to the next.
+    /// The parameter along which the net is longer, as the ray sees it.
     #[cold]
     pub(crate) fn longer(&self) -> Direction {
+        let [along_u, along_v] = self.lengths();
+        if along_u >= along_v { Direction::U } else { Direction::V }
+    }
+
+    /// The same if it is many times longer: as of rulings seen end on, to halve the other is to see the same twice.
+    #[cold]
+    pub(crate) fn much_longer(&self) -> Option<Direction> {
+        let [along_u, along_v] = self.lengths().map(|length| length * F::Scalar::from_f64(MUCH));
+        let [u, v] = self.lengths();
+        if along_u > v {
+            Some(Direction::U)
+        } else if along_v > u {
+            Some(Direction::V)
+        } else {
+            None
+        }
+    }
+
+    /// Whether one of the two edges along a parameter is a point, to rounding.
+    #[cold]
+    pub(crate) fn is_collapsed(&self, direction: Direction) -> bool {
+        let (rows, columns) = (self.degrees.rows(), self.degrees.columns());
+        let edge = |k: usize| -> [usize; 3] {
+            match direction {
+                // Along u: all rows of one column.
+                Direction::U => [k * (columns - 1), columns, rows],
+                Direction::V => [k * (rows - 1) * columns, 1, columns],
+            }
+        };
+        let point = |[first, stride, count]: [usize; 3]| {
+            let at = |k: usize| self.net.get(first + k * stride).map_or([F::Scalar::ZERO; 2], |point| point.position());
+            let [f, g] = at(0);
+            let off = self.error * F::Scalar::from_u32(4);
+            (1..count).map(at).all(|[h, i]| (h - f).abs() <= off && (i - g).abs() <= off)
+        };
+        point(edge(0)) || point(edge(1))
+    }
+
+    /// How far its points lie from its first corner at most: |f| + |g|.
+    #[cold]
+    pub(crate) fn extent(&self) -> F::Scalar {
+        let [f, g] = self.net.first().map_or([F::Scalar::ZERO; 2], |corner| corner.position());
+        self.net.iter().fold(F::Scalar::ZERO, |most, point| {
+            let [h, i] = point.position();
+            most.greater((h - f).abs() + (i - g).abs())
+        })
+    }
+
+    /// The longest steps from one point to the next, along u and along v.
+    fn lengths(&self) -> [F::Scalar; 2] {
         let columns = self.degrees.columns();
         let step = |p: F, q: F| {
-            let [f, g] = (q - p).f_g();
-            f.abs() + g.abs()
+            let [[f, g], [h, i]] = [p.position(), q.position()];
+            (h - f).abs() + (i - g).abs()
         };
         let longest = |most: F::Scalar, (&p, &q): (&F, &F)| most.greater(step(p, q));
         let along_u = self.net.iter().zip(self.net.iter().skip(columns)).fold(F::Scalar::ZERO, longest);
         let rows = self.net.chunks_exact(columns);
         let along_v = rows.fold(F::Scalar::ZERO, |most, row| row.iter().zip(row.iter().skip(1)).fold(most, longest));
-        if along_u >= along_v { Direction::U } else { Direction::V }
+        [along_u, along_v]
     }
 }
 
-/// The least and the largest weight of a net.
-#[inline(always)]
-fn weights<F: Flat>(net: &[F]) -> [F::Scalar; 2] {
-    if !F::RATIONAL {
-        return [F::Scalar::ONE; 2];
-    }
-    let none = [F::Scalar::INFINITY, F::Scalar::ZERO];
-    net.iter().fold(none, |[low, high], point| [low.lesser(point.weight()), high.greater(point.weight())])
-}
+/// A net is halved across its longer side where that is this many times, inverted, the other. Larger halves sides that a clip may
+/// yet shorten, smaller those that say nothing.
+const MUCH: f64 = 1.0 / 16.0;
 
 /// The largest |f| or |g| of a projected net's points.
 #[inline(always)]
@@ -148,13 +193,15 @@ fn reach<F: Flat>(net: &[F]) -> F::Scalar {
 /// The largest |f| or |g| of a net's points, if both take both signs, or nearly; if not, no point of the surface is on the ray.
 #[inline(always)]
 fn straddling<F: Flat>(net: &[F], error: F::Scalar) -> Option<F::Scalar> {
-    let error = error * weights(net)[1];
     let (mut low, mut high) = ([F::Scalar::INFINITY; 2], [F::Scalar::LEAST; 2]);
     for point in net {
         let f_g = point.f_g();
-        low = [low[0].lesser(f_g[0]), low[1].lesser(f_g[1])];
-        high = [high[0].greater(f_g[0]), high[1].greater(f_g[1])];
+        // Of a rational net each coefficient is off by its own weight's share: one for all would drown what is light.
+        let off = if F::RATIONAL { error * point.weight() } else { F::Scalar::ZERO };
+        low = [low[0].lesser(f_g[0] - off), low[1].lesser(f_g[1] - off)];
+        high = [high[0].greater(f_g[0] + off), high[1].greater(f_g[1] + off)];
     }
+    let error = if F::RATIONAL { F::Scalar::ZERO } else { error };
     let straddles = low[0] <= error && low[1] <= error && high[0] >= -error && high[1] >= -error;
     if F::RATIONAL {
         return straddles.then(|| reach(net));

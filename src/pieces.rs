@@ -14,7 +14,7 @@
 //! use patchray::bspline::BSpline;
 //! use patchray::pieces::{Piece, PieceError, PieceMemory, PieceNeeds, Pieces};
 //! use patchray::point::Plain;
-//! use patchray::ray::Hit;
+//! use patchray::ray::{Hit, Incidence};
 //! use patchray::scene::{Scene, SceneMemory, SceneOptions, SurfaceSlot};
 //!
 //! // Degrees 2 × 1; four points along u, the parameter of which runs from 3 to 5; two along v.
@@ -40,7 +40,7 @@
 //! # };
 //! let scene = Scene::build(&nets, &SceneOptions::default(), memory)?;
 //! // … and whatever a method needs: see the head of the crate. Then a hit of surface 1, the span from 4 to 5, at u = 1/2
-//! # let hit = Hit { t: 1.0, u: 0.5, v: 0.25, surface: 1, grazing: false };
+//! # let hit = Hit { t: 1.0, u: 0.5, v: 0.25, surface: 1, incidence: Incidence::Crossing };
 //! let at = pieces.in_knots(&hit).expect("a hit of this scene");
 //! assert_eq!((at.spline, at.u, at.v), (0, 4.5, 0.25));
 //! # assert_eq!(scene.len(), 2);

@@ -116,6 +116,23 @@ impl<S: Scalar> Planes<S> {
         Planes { reach: S::TWO, ..planes }
     }
 
+    /// The same where coordinates are bounded by `reach`.
+    #[inline(always)]
+    pub(crate) fn with_reach(self, reach: S) -> Self {
+        Planes { reach, ..self }
+    }
+
+    /// What a depth of the same ray's other planes, which count from elsewhere, is here: at least, whatever is rounded. What is
+    /// infinite stays.
+    #[inline(always)]
+    pub(crate) fn depth_from(&self, other: &Self, depth: S) -> S {
+        if !depth.is_finite() {
+            return depth;
+        }
+        let (t, offset) = (other.t(depth), other.t_origin.abs() + self.t_origin.abs());
+        (t - self.t_origin + (t.abs() + offset) * (S::EPSILON * S::from_u32(4))) / self.t_per_depth
+    }
+
     /// The moved origin, in the frame: where depth is 0.
     pub fn origin(&self) -> [S; 3] {
         self.origin
@@ -137,11 +154,10 @@ impl<S: Scalar> Planes<S> {
         self.reach
     }
 
-    /// By how much a projected coefficient may be off: some three roundings of numbers below 4 times the coordinates; twice
-    /// that, so that an edge which two surfaces share but for its last bits is lost by neither.
+    /// Distances from the ray up to this are rounding of a few sums.
     #[inline(always)]
-    pub(crate) fn projection_error(&self) -> S {
-        S::EPSILON * S::from_u32(8) * self.reach
+    pub(crate) fn noise(&self) -> S {
+        S::EPSILON * S::TWO * self.reach
     }
 
     /// 1 / direction, component by component; infinite where the direction is 0.
@@ -196,7 +212,7 @@ impl<S: Scalar> Planes<S> {
     pub(crate) fn depth_on<P: Point<Scalar = S>>(
         &self,
         net: &Net<'_, P>,
-        at: [S; 2],
+        at: [P::Parameter; 2],
         basis: &mut BasisView<'_, S>,
     ) -> Result<S, Full> {
         let place = match self.axes[0] {
@@ -211,11 +227,11 @@ impl<S: Scalar> Planes<S> {
     pub(crate) fn depth_derivatives<P: Point<Scalar = S>>(
         &self,
         net: &Net<'_, P>,
-        [u, v]: [S; 2],
+        at: [P::Parameter; 2],
         basis: &mut BasisView<'_, S>,
     ) -> Result<[S; 2], Full> {
         let [steep, ..] = self.axes;
-        let Jet { point, du, dv } = net.jet(u, v, basis)?;
+        let Jet { point, du, dv } = net.jet_at(at, basis)?;
         let place = steep.of(&point.position());
         let along = |d: P, weight: S| (steep.of(&d.weighted_position()) - place * weight) * self.forward;
         // Of a plain point the weight is constant, and its derivative 0.
@@ -233,6 +249,12 @@ impl<S: Scalar> Planes<S> {
     #[inline(always)]
     pub fn t(&self, depth: S) -> S {
         self.t_origin + depth * self.t_per_depth
+    }
+
+    /// How much t grows over a stretch of depth.
+    #[inline(always)]
+    pub(crate) fn time(&self, stretch: S) -> S {
+        stretch * self.t_per_depth
     }
 
     /// Whether a depth lies before the caller's interval.
@@ -253,7 +275,7 @@ impl<S: Scalar> Planes<S> {
 #[inline(never)]
 fn place_on<P: Point, const AXIS: usize>(
     net: &Net<'_, P>,
-    at: [P::Scalar; 2],
+    at: [P::Parameter; 2],
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<P::Scalar, Full> {
     let along = |p: P| p.weighted_position()[AXIS];

@@ -3,6 +3,7 @@
 //! Points with weights are homogeneous, (wx, wy, wz, w), so that the same sums serve both kinds.
 
 use crate::bernstein::{Linear, Tuple};
+use crate::parameter::{BothEnds, Number, Parameter};
 use crate::scalar::Scalar;
 use core::ops::{Add, Mul, Sub};
 
@@ -19,8 +20,10 @@ pub trait Point:
 {
     /// The type of the coordinates.
     type Scalar: Scalar;
+    /// How the surface's parameters are held.
+    type Parameter: Parameter<Scalar = Self::Scalar>;
     /// The point projected on a ray's two planes: f and g, times the weight, which comes third if there is one.
-    type Flat: Flat<Scalar = Self::Scalar>;
+    type Flat: Flat<Scalar = Self::Scalar, Parameter = Self::Parameter>;
     /// Whether there are weights.
     const RATIONAL: bool;
     /// All zero: a slot that holds nothing.
@@ -69,6 +72,8 @@ impl<S: Scalar> Weighted<S> {
 pub trait Flat: Linear<Self::Scalar> + core::fmt::Debug + PartialEq + Send + Sync + 'static {
     /// The type of the coordinates.
     type Scalar: Scalar;
+    /// How the surface's parameters are held.
+    type Parameter: Parameter<Scalar = Self::Scalar>;
     /// Whether there are weights.
     const RATIONAL: bool;
     /// From f and g, both times the weight, and the weight.
@@ -77,10 +82,19 @@ pub trait Flat: Linear<Self::Scalar> + core::fmt::Debug + PartialEq + Send + Syn
     fn f_g(self) -> [Self::Scalar; 2];
     /// The weight; of a point without one 1.
     fn weight(self) -> Self::Scalar;
+    /// f and g, weight divided out.
+    #[inline(always)]
+    fn position(self) -> [Self::Scalar; 2] {
+        let weight = self.weight();
+        // Not by `map`, which a compiler may leave out of line.
+        let [f, g] = self.f_g();
+        [f / weight, g / weight]
+    }
 }
 
 impl<S: Scalar> Flat for Tuple<S, 2> {
     type Scalar = S;
+    type Parameter = Number<S>;
     const RATIONAL: bool = false;
     #[inline(always)]
     fn new(f: S, g: S, _weight: S) -> Self {
@@ -98,6 +112,7 @@ impl<S: Scalar> Flat for Tuple<S, 2> {
 
 impl<S: Scalar> Flat for Tuple<S, 3> {
     type Scalar = S;
+    type Parameter = BothEnds<S>;
     const RATIONAL: bool = true;
     #[inline(always)]
     fn new(f: S, g: S, weight: S) -> Self {
@@ -147,6 +162,7 @@ componentwise!(Weighted, 0 1 2 3);
 impl<S: Scalar> Point for Plain<S> {
     type Scalar = S;
     const RATIONAL: bool = false;
+    type Parameter = Number<S>;
     type Flat = Tuple<S, 2>;
     #[inline(always)]
     fn weighted_position(self) -> [S; 3] {
@@ -172,6 +188,7 @@ impl<S: Scalar> Point for Plain<S> {
 impl<S: Scalar> Point for Weighted<S> {
     type Scalar = S;
     const RATIONAL: bool = true;
+    type Parameter = BothEnds<S>;
     type Flat = Tuple<S, 3>;
     #[inline(always)]
     fn weighted_position(self) -> [S; 3] {

@@ -156,7 +156,19 @@ pub struct Hit<S> {
     pub v: S,
     /// The surface's number in its scene, from 0.
     pub surface: u32,
-    /// Whether the ray is tangent there to working precision: t, u and v are then known to about half the digits only. See
-    /// [`Root::grazing`](crate::root::Root::grazing).
-    pub grazing: bool,
+    /// How the ray meets the surface there.
+    pub incidence: Incidence,
+}
+
+/// How a ray meets a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Incidence {
+    /// The ray passes through the surface.
+    #[default]
+    Crossing = 0,
+    /// The ray is tangent to working precision: at an angle to the surface whose sine is below 4 √tolerance. A displacement of
+    /// the ray by the tolerance may then merge this root with another, and t, u and v are known to about half the digits.
+    Grazing = 1,
+    /// The ray lies in the surface for a stretch, to working precision. t is where the stretch begins.
+    Contact = 2,
 }

@@ -4,55 +4,62 @@
 
 use crate::bernstein::Direction;
 use crate::limits::Limit;
+use crate::parameter::Parameter;
 use crate::scalar::Scalar;
 use heapless::vec::VecView;
 
 /// A rectangle of a surface's domain, and the parameter to be clipped next. Both ends belong to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Region<S> {
+pub struct Region<A> {
     /// From and to, of u and of v; within [0, 1].
-    pub sides: [[S; 2]; 2],
+    pub sides: [[A; 2]; 2],
     /// What to clip next.
     pub next: Direction,
 }
 
-impl<S: Scalar> Region<S> {
+impl<A: Parameter> Region<A> {
     /// The whole surface; u is clipped first.
-    pub const WHOLE: Self = Region { sides: [[S::ZERO, S::ONE]; 2], next: Direction::U };
+    pub const WHOLE: Self = Region { sides: [[A::ZERO, A::ONE]; 2], next: Direction::U };
+
+    /// The rectangle between these numbers, from and to of u and of v.
+    #[inline(always)]
+    pub fn between(sides: [[A::Scalar; 2]; 2]) -> Self {
+        // Not by `map`, which a compiler may leave out of line.
+        let [[u0, u1], [v0, v1]] = sides;
+        Region { sides: [[A::new(u0), A::new(u1)], [A::new(v0), A::new(v1)]], next: Direction::U }
+    }
 
     /// Its width in u and in v.
     #[inline(always)]
-    pub fn widths(&self) -> [S; 2] {
-        self.sides.map(|[from, to]| to - from)
+    pub fn widths(&self) -> [A::Scalar; 2] {
+        self.sides.map(|[from, to]| to.minus(from))
     }
 
     /// Its middle.
     #[inline(always)]
-    pub fn middle(&self) -> [S; 2] {
-        self.sides.map(|[from, to]| (from + to) * S::HALF)
+    pub fn middle(&self) -> [A; 2] {
+        self.sides.map(|[from, to]| A::middle(from, to))
     }
 
     /// The nearest point of it.
     #[inline(always)]
-    pub fn nearest(&self, [u, v]: [S; 2]) -> [S; 2] {
+    pub fn nearest(&self, [u, v]: [A; 2]) -> [A; 2] {
         let [[u0, u1], [v0, v1]] = self.sides;
-        [u.clamped(u0, u1), v.clamped(v0, v1)]
+        [u.held(u0, u1), v.held(v0, v1)]
     }
 
     /// Becomes its part [from, to] in one parameter, counted across it from 0 to 1.
     #[inline(always)]
-    pub fn narrow(&mut self, direction: Direction, [from, to]: [S; 2]) {
+    pub fn narrow(&mut self, direction: Direction, part: [A::Scalar; 2]) {
         let [low, high] = self.sides[direction as usize];
-        let width = high - low;
-        let at = |share: S| if share == S::ONE { high } else { low + width * share };
-        self.sides[direction as usize] = [at(from), at(to)];
+        self.sides[direction as usize] = part.map(|share| low.toward(high, share, A::Scalar::ONE - share));
     }
 
     /// Its halves in one parameter; `None` if the number type holds nothing between its ends.
     pub fn halves(&self, direction: Direction) -> Option<[Self; 2]> {
         let [low, high] = self.sides[direction as usize];
         let middle = self.middle()[direction as usize];
-        if !(low < middle && middle < high) {
+        if !(low.is_below(middle) && middle.is_below(high)) {
             return None;
         }
         let (mut first, mut second) = (*self, *self);
@@ -61,13 +68,18 @@ impl<S: Scalar> Region<S> {
         Some([first, second])
     }
 
+    /// Whether it has halves in either parameter.
+    pub fn is_divisible(&self) -> bool {
+        [Direction::U, Direction::V].iter().any(|&direction| self.halves(direction).is_some())
+    }
+
     /// What it has in common with another rectangle; `None` if that is nothing.
     #[inline(always)]
-    pub fn meet(&self, sides: [[S; 2]; 2]) -> Option<Self> {
+    pub fn meet(&self, sides: [[A; 2]; 2]) -> Option<Self> {
         let mut smaller = *self;
         for (side, [from, to]) in smaller.sides.iter_mut().zip(sides) {
-            *side = [side[0].greater(from), side[1].lesser(to)];
-            if !(side[0] <= side[1]) {
+            *side = [side[0].later(from), side[1].earlier(to)];
+            if !side[0].is_at_most(side[1]) {
                 return None;
             }
         }
@@ -76,8 +88,11 @@ impl<S: Scalar> Region<S> {
 
     /// Whether it holds all of another rectangle.
     #[inline(always)]
-    pub fn encloses(&self, sides: [[S; 2]; 2]) -> bool {
-        self.sides.iter().zip(sides).all(|(outer, inner)| outer[0] <= inner[0] && inner[1] <= outer[1])
+    pub fn encloses(&self, sides: [[A; 2]; 2]) -> bool {
+        self.sides
+            .iter()
+            .zip(sides)
+            .all(|(outer, inner)| outer[0].is_at_most(inner[0]) && inner[1].is_at_most(outer[1]))
     }
 
     /// The smallest rectangle that holds it and another.
@@ -85,44 +100,44 @@ impl<S: Scalar> Region<S> {
     pub fn joined(&self, other: &Self) -> Self {
         let mut larger = *self;
         for (side, [from, to]) in larger.sides.iter_mut().zip(other.sides) {
-            *side = [side[0].lesser(from), side[1].greater(to)];
+            *side = [side[0].earlier(from), side[1].later(to)];
         }
         larger
     }
 
     /// Whether it holds a point.
-    pub fn holds(&self, point: [S; 2]) -> bool {
-        self.sides.iter().zip(point).all(|(&[low, high], c)| low <= c && c <= high)
+    pub fn holds(&self, point: [A; 2]) -> bool {
+        self.sides.iter().zip(point).all(|(&[low, high], c)| low.is_at_most(c) && c.is_at_most(high))
     }
 
     /// Whether it and another have a point in common.
     pub fn adjoins(&self, other: &Self) -> bool {
-        self.sides.iter().zip(&other.sides).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1])
+        self.sides.iter().zip(&other.sides).all(|(a, b)| a[0].is_at_most(b[1]) && b[0].is_at_most(a[1]))
     }
 }
 
 /// The order in which regions that wait are dealt with.
 #[derive(Clone, Copy, Debug)]
-pub enum Order<S> {
+pub enum Order<A> {
     /// Any: the last one first, which keeps fewest waiting.
     Any,
     /// The prior region first, that which holds this point; then those that adjoin it; then the rest.
     Around {
         /// (u, v) of the previous ray's point.
-        point: [S; 2],
+        point: [A; 2],
         /// The smallest region so far that held it.
-        prior: Region<S>,
+        prior: Region<A>,
     },
 }
 
-impl<S: Scalar> Order<S> {
+impl<A: Parameter> Order<A> {
     /// Around the point that the previous ray left; without one, any.
-    pub fn around(point: Option<[S; 2]>) -> Self {
+    pub fn around(point: Option<[A; 2]>) -> Self {
         point.map_or(Order::Any, |point| Order::Around { point, prior: Region::WHOLE })
     }
 
     /// Puts a region among those that wait.
-    pub fn push(&self, region: Region<S>, pending: &mut VecView<Region<S>>, most: u32) -> Result<(), Limit> {
+    pub fn push(&self, region: Region<A>, pending: &mut VecView<Region<A>>, most: u32) -> Result<(), Limit> {
         if pending.len() >= most as usize {
             return Err(Limit::PendingDomains);
         }
@@ -130,11 +145,11 @@ impl<S: Scalar> Order<S> {
     }
 
     /// Takes the region to be dealt with next.
-    pub fn pop(&mut self, pending: &mut VecView<Region<S>>) -> Option<Region<S>> {
+    pub fn pop(&mut self, pending: &mut VecView<Region<A>>) -> Option<Region<A>> {
         let Order::Around { point, prior } = self else {
             return pending.pop();
         };
-        let mut first: Option<(usize, (u32, S))> = None;
+        let mut first: Option<(usize, (u32, A::Scalar))> = None;
         for (index, region) in pending.iter().enumerate() {
             let rank = rank(region, *point, prior);
             if first.is_none_or(|(_, least)| rank < least) {
@@ -152,7 +167,7 @@ impl<S: Scalar> Order<S> {
 }
 
 /// 0 for the prior region, 1 for those that adjoin it, 2 for the rest; ours: among equals the distance from the point.
-fn rank<S: Scalar>(region: &Region<S>, point: [S; 2], prior: &Region<S>) -> (u32, S) {
+fn rank<A: Parameter>(region: &Region<A>, point: [A; 2], prior: &Region<A>) -> (u32, A::Scalar) {
     let class = if region.holds(point) {
         0
     } else if region.adjoins(prior) {
@@ -161,7 +176,7 @@ fn rank<S: Scalar>(region: &Region<S>, point: [S; 2], prior: &Region<S>) -> (u32
         2
     };
     let [u, v] = region.nearest(point);
-    (class, (u - point[0]).abs() + (v - point[1]).abs())
+    (class, u.minus(point[0]).abs() + v.minus(point[1]).abs())
 }
 
 #[cfg(test)]

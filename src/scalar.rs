@@ -55,8 +55,7 @@ pub trait Scalar:
     const MIN_POSITIVE: Self;
     /// The largest k for which both 2^k and 2^−k are of full precision.
     const MAX_SCALE: i32;
-    /// Default of [`Limits::tolerance`](crate::limits::Limits::tolerance): some 2,000 roundings in `f64`, some 30 in
-    /// `f32`, where there are none to spare.
+    /// Default of [`Limits::tolerance`](crate::limits::Limits::tolerance): some nine roundings.
     const TOLERANCE: Self;
 
     /// The nearest number of this type; how constants are written.
@@ -244,8 +243,8 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, Vec3, libm::sqrtf, libm::scalbnf, libm::frexpf, 4e-6);
-scalar!(f64, DVec3, libm::sqrt, libm::scalbn, libm::frexp, 4e-13);
+scalar!(f32, Vec3, libm::sqrtf, libm::scalbnf, libm::frexpf, 1e-6);
+scalar!(f64, DVec3, libm::sqrt, libm::scalbn, libm::frexp, 2e-15);
 
 #[cfg(test)]
 mod tests {

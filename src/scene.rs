@@ -14,7 +14,7 @@ use crate::ray::{Hit, Interval, Ray, RayError};
 use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::story::Event;
-use crate::surface::{Net, NetError, Surface};
+use crate::surface::{Net, NetError, Shape, Surface};
 
 /// A surface as a slot of lent memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +22,7 @@ use crate::surface::{Net, NetError, Surface};
 pub struct SurfaceSlot<S> {
     /// The box of its control points, in the frame, padded.
     bounds: Aabb<S>,
-    /// See [`Net::bend`].
-    bend: [S; 3],
+    shape: Shape<S>,
     /// The first of its control points.
     first: u32,
     degree_u: u32,
@@ -33,19 +32,22 @@ pub struct SurfaceSlot<S> {
 impl<S: Scalar> SurfaceSlot<S> {
     /// What a slot holds before it is filled.
     pub const EMPTY: Self =
-        SurfaceSlot { bounds: Aabb::ORIGIN, bend: [S::ZERO; 3], first: 0, degree_u: 0, degree_v: 0 };
+        SurfaceSlot { bounds: Aabb::ORIGIN, shape: Shape::EMPTY, first: 0, degree_u: 0, degree_v: 0 };
 
     /// The slot that holds these numbers. For tables; see [`LAYOUT`](crate::LAYOUT).
     ///
-    /// They are the box's least and largest corner and [`Net::bend`]; then the first of its control points, and the degrees in
-    /// u and v.
-    pub const fn from_numbers([low, high, bend]: [[S; 3]; 3], [first, degree_u, degree_v]: [u32; 3]) -> Self {
-        SurfaceSlot { bounds: Aabb { low, high }, bend, first, degree_u, degree_v }
+    /// They are the box's least and largest corner, then [`Shape`]'s bend, and its size, reach and least weight; then the first of
+    /// its control points, and the degrees in u and v.
+    pub const fn from_numbers([low, high, bend, shape]: [[S; 3]; 4], [first, degree_u, degree_v]: [u32; 3]) -> Self {
+        let [size, reach, lightest] = shape;
+        let shape = Shape { bend, size, reach, lightest };
+        SurfaceSlot { bounds: Aabb { low, high }, shape, first, degree_u, degree_v }
     }
 
     /// What [`SurfaceSlot::from_numbers`] takes.
-    pub const fn numbers(&self) -> ([[S; 3]; 3], [u32; 3]) {
-        ([self.bounds.low, self.bounds.high, self.bend], [self.first, self.degree_u, self.degree_v])
+    pub const fn numbers(&self) -> ([[S; 3]; 4], [u32; 3]) {
+        let Shape { bend, size, reach, lightest } = self.shape;
+        ([self.bounds.low, self.bounds.high, bend, [size, reach, lightest]], [self.first, self.degree_u, self.degree_v])
     }
 }
 
@@ -198,11 +200,12 @@ impl<'m, P: Point> Scene<'m, P> {
             for point in net.points() {
                 points.push(point.rescaled(frame.exponent(), weight));
             }
-            let bend = points.since(first as usize).map_or([P::Scalar::ZERO; 3], |scaled| {
-                Net::new(net.degree_u(), net.degree_v(), &*scaled).map_or([P::Scalar::ZERO; 3], |net| net.bend())
+            let shape = points.since(first as usize).map_or(Shape::EMPTY, |scaled| {
+                let scaled = Net::new(net.degree_u(), net.degree_v(), &*scaled);
+                scaled.map_or(Shape::EMPTY, |scaled| Shape::of(&scaled))
             });
             let (degree_u, degree_v) = (net.degree_u() as u32, net.degree_v() as u32);
-            surfaces.push(SurfaceSlot { bounds: boxes(k), bend, first, degree_u, degree_v });
+            surfaces.push(SurfaceSlot { bounds: boxes(k), shape, first, degree_u, degree_v });
         }
         let mut offsets = Arena::new(memory.offsets);
         let mut references = Arena::new(memory.references);
@@ -281,20 +284,26 @@ impl<'m, P: Point> Scene<'m, P> {
         let (n, m, first) = (slot.degree_u as usize, slot.degree_v as usize, slot.first as usize);
         let count = n.checked_add(1)?.checked_mul(m.checked_add(1)?)?;
         let points = self.points.get(first..first.checked_add(count)?)?;
-        Some(Surface { number: number as u32, net: Net::new(n, m, points).ok()?, bend: slot.bend })
+        Some(Surface { number: number as u32, net: Net::new(n, m, points).ok()?, shape: slot.shape })
     }
 
-    /// The surfaces' nets, in the frame.
-    pub fn nets(&self) -> impl Iterator<Item = Net<'m, P>> {
-        (0..self.len()).map_while(|k| self.surface(k)).map(|surface| surface.net)
+    /// All surfaces.
+    pub fn surfaces(&self) -> impl Iterator<Item = Surface<'m, P>> {
+        (0..self.len()).map_while(|k| self.surface(k))
     }
 
-    /// The unit normal at a hit, along ∂S/∂u × ∂S/∂v; zero where there is none. See [`Net::normal`].
+    /// Whether the scene holds surfaces to which rays have to be brought with care.
+    pub(crate) fn has_apart(&self) -> bool {
+        self.surfaces.iter().any(|slot| slot.shape.is_apart())
+    }
+
+    /// The unit normal at a hit, along ∂S/∂u × ∂S/∂v; `None` where there is none, as at the apex of a cone. See
+    /// [`Net::normal`].
     pub fn normal(
         &self,
         hit: &Hit<P::Scalar>,
         basis: &mut BasisView<'_, P::Scalar>,
-    ) -> Result<[P::Scalar; 3], GaveUp<P::Scalar>> {
+    ) -> Result<Option<[P::Scalar; 3]>, GaveUp<P::Scalar>> {
         let give_up = |limit| GaveUp { limit, best: Some(*hit) };
         let surface = self.surface(hit.surface as usize).ok_or(give_up(Limit::Slot))?;
         surface.net.normal(hit.u, hit.v, basis).map_err(|Full| give_up(Limit::Scratch))
@@ -316,20 +325,21 @@ impl<'m, P: Point> Scene<'m, P> {
             &Planes<P::Scalar>,
             DepthRange<P::Scalar>,
             &mut Work,
-        ) -> Result<Option<Root<P::Scalar>>, Limit>,
+        ) -> Result<Option<Root<P::Parameter>>, Limit>,
     ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-        let mut best: Option<(Root<P::Scalar>, u32, P::Scalar)> = None;
+        let mut best: Option<(Root<P::Parameter>, u32, P::Scalar)> = None;
         let ended = self.visit(ray, interval, limits, work, |surface, planes, within, work| {
             let Some(root) = search(surface, planes, within, work)? else {
                 return Ok(P::Scalar::INFINITY);
             };
-            // Of equal depths the lower number wins, so that the answer does not depend on the order of search.
-            let closer = match best {
-                Some((old, other, _)) => root.depth < old.depth || (root.depth == old.depth && surface.number < other),
-                None => true,
+            let t = planes.t(root.depth);
+            // Of equal depths the lower number wins, so that the answer does not depend on the order of search; t decides, since
+            // depths of surfaces apart are counted from elsewhere.
+            let closer = |(old, other, old_t): (Root<P::Parameter>, u32, P::Scalar)| {
+                t < old_t || (t == old_t && (root.depth, surface.number) < (old.depth, other))
             };
-            if closer {
-                best = Some((root, surface.number, planes.t(root.depth)));
+            if best.is_none_or(closer) {
+                best = Some((root, surface.number, t));
             }
             Ok(root.depth)
         });
@@ -385,7 +395,21 @@ impl<'m, P: Point> Scene<'m, P> {
                 }
                 let surface = self.surface(number).ok_or(Limit::Slot)?;
                 P::Scalar::tell(|| Event::Surface(surface.number));
-                farthest = farthest.lesser(search(&surface, &planes, within, work)?);
+                farthest = farthest.lesser(if slot.shape.is_apart() {
+                    let Some((near, range)) =
+                        self.header.frame.enter_near(ray, interval, &slot.bounds, slot.shape.unit())
+                    else {
+                        continue;
+                    };
+                    let within =
+                        DepthRange { min: range.min, max: range.max.lesser(near.depth_from(&planes, farthest)) };
+                    if !(within.min <= within.max) {
+                        continue;
+                    }
+                    planes.depth_from(&near, search(&surface, &near, within, work)?)
+                } else {
+                    search(&surface, &planes, within, work)?
+                });
             }
             if voxel.exit >= farthest {
                 break;

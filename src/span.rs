@@ -91,10 +91,10 @@ impl<'l, S: Scalar> InLine<'l, S> {
             &InLine<'_, S>,
             &Limits<S>,
             &mut Work,
-        ) -> Result<Option<Root<S>>, Limit>,
+        ) -> Result<Option<Root<P::Parameter>>, Limit>,
     ) -> Result<Option<Hit<S>>, GaveUp<S>> {
         let Facing { planes, range, .. } = &view.facing(ray);
-        let mut best: Option<(Root<S>, u32)> = None;
+        let mut best: Option<(Root<P::Parameter>, u32)> = None;
         let ended = self.surfaces(limits, work, |number, near, in_line, work| {
             let farthest = best.map_or(range.max, |(root, _)| root.depth);
             if !(near <= farthest) {
@@ -108,7 +108,7 @@ impl<'l, S: Scalar> InLine<'l, S> {
             S::tell(|| Event::Surface(number));
             if let Some(root) = search(&surface, planes, within, in_line, limits, work)? {
                 // As in `Scene::closest`.
-                let closer = |(old, other): (Root<S>, u32)| {
+                let closer = |(old, other): (Root<P::Parameter>, u32)| {
                     root.depth < old.depth || (root.depth == old.depth && number < other)
                 };
                 if best.is_none_or(closer) {

@@ -4,6 +4,8 @@
 //! what it does. `f32` and `f64` do not listen, so that a program that uses these holds none of it. [`Told`](crate::told::Told) is a
 //! number that computes the same bits and passes on what it is told.
 
+use crate::ray::Incidence;
+
 /// Something that a search did. Numbers are in the scene's [frame](crate::frame), in which it is about of size 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
@@ -52,8 +54,8 @@ pub enum Event {
         at: [f64; 2],
         /// How far along the ray, from where it enters the scene's frame.
         depth: f64,
-        /// Whether the ray is tangent.
-        grazing: bool,
+        /// How the ray meets the surface there.
+        incidence: Incidence,
     },
     /// A region of the surface is clipped.
     Clip {

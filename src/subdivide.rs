@@ -2,7 +2,8 @@
 //!
 //! Source: Barth and Stürzlinger (1993); the paper's preprocessing step. A piece is halved in the direction of larger
 //! curvature until it is flat. What the paper leaves open: "flat" is that bend in u, bend in v and twist together, bounds
-//! of the distance between the piece and its parallelogram, are at most the flatness times the scene's diagonal.
+//! of the distance between the piece and its parallelogram, are at most the flatness times the scene's diagonal, and a share of
+//! the surface's size.
 
 use crate::arena::{Arena, Need};
 use crate::bernstein::Full;
@@ -12,7 +13,7 @@ use crate::measure::Measure;
 use crate::patch::{Parallelepiped, Patch, Patches};
 use crate::point::Point;
 use crate::scalar::Scalar;
-use crate::surface::Net;
+use crate::surface::{Net, Surface};
 use crate::tree::Tree;
 use heapless::vec::{Vec, VecView};
 
@@ -99,6 +100,11 @@ impl core::fmt::Display for SubdivideError {
 
 impl core::error::Error for SubdivideError {}
 
+/// However small a surface is in its scene, its patches are as near to their parallelograms as this share of its longest side. (What
+/// is small shows few pixels, so that a share of the scene is what most pictures want; but starts and boxes of a patch that is
+/// nowhere near flat are worth nothing.) Smaller makes more patches of small surfaces.
+const COARSEST: f64 = 1.0 / 32.0;
+
 /// What is still to be done on the way through a tree.
 #[derive(Clone, Copy, Debug)]
 enum Pending {
@@ -151,7 +157,7 @@ pub type Subdivided<'m, S> = (Patches<'m, S>, Option<Tree<'m, S>>);
 /// The tree is part of the result only if `tree` is `Some`. Too little memory is an error that lists all needs, so empty
 /// slices ask for them.
 pub fn subdivide<'m, 'n, P: Point>(
-    surfaces: impl Iterator<Item = Net<'n, P>>,
+    surfaces: impl Iterator<Item = Surface<'n, P>>,
     frame: &Frame<P::Scalar>,
     options: &Subdivision<P::Scalar>,
     scratch: &mut SubdivideScratchView<'_, P>,
@@ -167,11 +173,12 @@ pub fn subdivide<'m, 'n, P: Point>(
     };
     let mut nodes = Arena::new(nodes);
     let mut links = Arena::new(links);
-    let padding = P::Scalar::EPSILON * P::Scalar::from_u32(options.padding);
-    let tolerance = options.flatness * frame.diagonal();
     let depth = options.depth.min(MAX_LEVEL);
 
-    for (number, net) in (0_u32..).zip(surfaces) {
+    for (number, Surface { net, shape, .. }) in (0_u32..).zip(surfaces) {
+        let padding = P::Scalar::EPSILON * P::Scalar::from_u32(options.padding) * shape.unit();
+        let coarsest = shape.size * P::Scalar::from_f64(COARSEST);
+        let tolerance = (options.flatness * frame.diagonal()).lesser(coarsest);
         let begin = patches.len();
         first.push(begin as u32);
         scratch.pending.clear();

@@ -8,9 +8,12 @@ use crate::arena::Need;
 pub use crate::bernstein::Direction;
 use crate::bernstein::{self, BasisView, Degrees, Full, Jet, Linear, MAX_DEGREE};
 use crate::casteljau;
+use crate::parameter::Parameter;
 use crate::point::Point;
 use crate::scalar::{Scalar, Vector3};
 use heapless::vec::VecView;
+
+mod normal;
 
 /// Why a control net is not a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,14 +121,20 @@ impl<'m, P: Point> Net<'m, P> {
     /// on.
     #[inline]
     pub fn jet(&self, u: P::Scalar, v: P::Scalar, basis: &mut BasisView<'_, P::Scalar>) -> Result<Jet<P>, Full> {
-        bernstein::jet(self.degrees(), self.points, [u, v], basis, |p| p)
+        self.jet_at([u, v].map(P::Parameter::new), basis)
+    }
+
+    /// The same where parameters are held as finely as space needs.
+    #[inline(always)]
+    pub(crate) fn jet_at(&self, at: [P::Parameter; 2], basis: &mut BasisView<'_, P::Scalar>) -> Result<Jet<P>, Full> {
+        bernstein::jet(self.degrees(), self.points, at, basis, |p| p)
     }
 
     /// Value at (u, v) of what `part` takes from each control point.
     #[inline(always)]
     pub(crate) fn value_of<T: Linear<P::Scalar>>(
         &self,
-        at: [P::Scalar; 2],
+        at: [P::Parameter; 2],
         basis: &mut BasisView<'_, P::Scalar>,
         part: impl Fn(P) -> T,
     ) -> Result<T, Full> {
@@ -139,89 +148,7 @@ impl<'m, P: Point> Net<'m, P> {
         v: P::Scalar,
         basis: &mut BasisView<'_, P::Scalar>,
     ) -> Result<[P::Scalar; 3], Full> {
-        Ok(self.value_of([u, v], basis, |p| p)?.position())
-    }
-
-    /// The unit normal at (u, v), along ∂S/∂u × ∂S/∂v; zero where the surface has none.
-    ///
-    /// Where a first derivative vanishes (a collapsed edge) or both are parallel, the normal's limit from the middle of
-    /// the domain is taken, from the second derivatives.
-    pub fn normal(
-        &self,
-        u: P::Scalar,
-        v: P::Scalar,
-        basis: &mut BasisView<'_, P::Scalar>,
-    ) -> Result<[P::Scalar; 3], Full> {
-        let (first, second) = self.derivatives(u, v, basis)?;
-        let [su, sv] = first;
-        let [suu, suv, svv] = second;
-        // What is below this share of the largest product is rounding: a few dozen operations went into each factor.
-        let noise = P::Scalar::EPSILON * P::Scalar::from_u32(64);
-        let size = |a: V<P>, b: V<P>| a.largest() * b.largest();
-        let regular = su.cross(sv);
-        let scale = self.size();
-        if regular.largest() > noise * scale * su.largest().greater(sv.largest()) {
-            return Ok(regular.unit().to_array());
-        }
-        // To first order along (a, b), the way to the middle of the domain.
-        let (a, b) = (P::Scalar::HALF - u, P::Scalar::HALF - v);
-        let (turn_u, turn_v) = (suu * a + suv * b, suv * a + svv * b);
-        let limit = turn_u.cross(sv) + su.cross(turn_v);
-        if limit.largest() > noise * (size(turn_u, sv) + size(su, turn_v)).greater(noise * scale * scale) {
-            return Ok(limit.unit().to_array());
-        }
-        // Both derivatives vanish: to second order.
-        Ok(turn_u.cross(turn_v).unit().to_array())
-    }
-
-    /// First derivatives in u and v, and second ones in uu, uv, vv, of the position.
-    #[allow(clippy::type_complexity)]
-    fn derivatives(
-        &self,
-        u: P::Scalar,
-        v: P::Scalar,
-        basis: &mut BasisView<'_, P::Scalar>,
-    ) -> Result<([V<P>; 2], [V<P>; 3]), Full> {
-        basis.fill(self.degrees(), [u, v])?;
-        // sums[i][j]: i derivatives in u, j in v.
-        let mut sums = [[P::ZERO; 3]; 3];
-        for (row, b) in self.rows().zip(basis.u.iter()) {
-            let mut along = [P::ZERO; 3];
-            for (&p, c) in row.iter().zip(basis.v.iter()) {
-                for k in 0..3 {
-                    along[k] = along[k] + p * c[k];
-                }
-            }
-            for i in 0..3 {
-                for j in 0..3 {
-                    sums[i][j] = sums[i][j] + along[j] * b[i];
-                }
-            }
-        }
-        let vector = |p: P| V::<P>::from_array(p.weighted_position());
-        let [[s, sv, svv], [su, suv, _], [suu, _, _]] = sums;
-        if !P::RATIONAL {
-            return Ok(([su, sv].map(vector), [suu, suv, svv].map(vector)));
-        }
-        // Quotient rule, from w·S = X.
-        let inverse = P::Scalar::ONE / s.weight();
-        let point = vector(s) * inverse;
-        let two = P::Scalar::TWO;
-        let d_u = (vector(su) - point * su.weight()) * inverse;
-        let d_v = (vector(sv) - point * sv.weight()) * inverse;
-        let d_uu = (vector(suu) - d_u * (two * su.weight()) - point * suu.weight()) * inverse;
-        let d_uv = (vector(suv) - d_v * su.weight() - d_u * sv.weight() - point * suv.weight()) * inverse;
-        let d_vv = (vector(svv) - d_v * (two * sv.weight()) - point * svv.weight()) * inverse;
-        Ok(([d_u, d_v], [d_uu, d_uv, d_vv]))
-    }
-
-    /// The largest |coordinate difference| between a control point and the first one: what rounding is measured by.
-    fn size(&self) -> P::Scalar {
-        let first = self.corners()[0].position();
-        self.points.iter().fold(P::Scalar::ZERO, |size, p| {
-            let q = p.position();
-            size.greater((V::<P>::from_array(q) - V::<P>::from_array(first)).largest())
-        })
+        Ok(self.value_of([u, v].map(P::Parameter::new), basis, |p| p)?.position())
     }
 
     /// The control net of the part over [u0, u1] × [v0, v1], by de Casteljau's algorithm, into `out` (whose old content
@@ -229,8 +156,8 @@ impl<'m, P: Point> Net<'m, P> {
     pub fn restrict(&self, u: [P::Scalar; 2], v: [P::Scalar; 2], out: &mut VecView<P>) -> Result<(), Full> {
         out.clear();
         out.extend_from_slice(self.points).map_err(|_| Full)?;
-        casteljau::restrict(self.degrees, out, Direction::U, u);
-        casteljau::restrict(self.degrees, out, Direction::V, v);
+        casteljau::restrict(self.degrees, out, Direction::U, u.map(P::Parameter::new));
+        casteljau::restrict(self.degrees, out, Direction::V, v.map(P::Parameter::new));
         Ok(())
     }
 
@@ -252,41 +179,93 @@ pub struct Surface<'m, P: Point> {
     pub number: u32,
     /// Its control net, in the frame.
     pub net: Net<'m, P>,
-    /// See [`Net::bend`].
-    pub bend: [P::Scalar; 3],
+    /// What is known of it beforehand.
+    pub shape: Shape<P::Scalar>,
 }
 
+/// What is known of a surface beforehand: plain numbers, in the frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Shape<S> {
+    /// See [`Net::bend`].
+    pub bend: [S; 3],
+    /// The longest side of the box of its control points: what the tolerance is a share of.
+    pub size: S,
+    /// Its largest |coordinate|: what rounding is a share of.
+    pub reach: S,
+    /// Its least weight; 1 without weights.
+    pub lightest: S,
+}
+
+impl<S: Scalar> Shape<S> {
+    /// Of nothing.
+    pub const EMPTY: Self = Shape { bend: [S::ZERO; 3], size: S::ZERO, reach: S::ZERO, lightest: S::ZERO };
+
+    /// Of a net in the frame.
+    pub(crate) fn of<P: Point<Scalar = S>>(net: &Net<'_, P>) -> Self {
+        let longest = |vector: [S; 3]| S::Vec3::from_array(vector).largest();
+        let (mut reach, mut low, mut high) = (S::ZERO, [S::INFINITY; 3], [S::LEAST; 3]);
+        for point in net.points().iter().map(|point| point.position()) {
+            reach = reach.greater(longest(point));
+            low = core::array::from_fn(|k| low[k].lesser(point[k]));
+            high = core::array::from_fn(|k| high[k].greater(point[k]));
+        }
+        let sides = core::array::from_fn(|k| high[k] - low[k]);
+        let lightest = net.points().iter().fold(S::INFINITY, |least, point| least.lesser(point.weight()));
+        let shape = Shape { bend: [S::ZERO; 3], size: longest(sides), reach, lightest };
+        Shape { bend: net.bend(shape.unit()), ..shape }
+    }
+
+    /// Whether its coordinates are so much smaller than the scene's that rays have to be brought near it with care: for others
+    /// the rounding of the scene's is hardly more than that of its own.
+    #[inline(always)]
+    pub(crate) fn is_apart(&self) -> bool {
+        self.reach < S::from_f32(APART)
+    }
+
+    /// Bounds the coordinates of the surface and of rays near it.
+    #[inline(always)]
+    pub(crate) fn unit(&self) -> S {
+        if self.is_apart() { self.reach * S::TWO } else { S::ONE }
+    }
+}
+
+/// See [`Shape::is_apart`]: the largest |coordinate| of a scene is between 1/2 and 1. Larger makes more rays be brought near with
+/// care, some 200 instructions for each surface that such a ray comes to; smaller lets surfaces be met less exactly, by up to
+/// its inverse times the rounding of their own coordinates.
+pub(crate) const APART: f32 = 0.125;
+
 impl<P: Point> Surface<'_, P> {
-    /// How far from the ray one Newton step of (du, dv) may lead, whatever the ray and the place: see [`Net::bend`].
+    /// How far from the ray one Newton step of (du, dv) may lead, times the weight there, whatever the ray and the place: see
+    /// [`Net::bend`].
     #[inline(always)]
     pub fn strays(&self, [du, dv]: [P::Scalar; 2]) -> P::Scalar {
-        let [uu, uv, vv] = self.bend;
+        let [uu, uv, vv] = self.shape.bend;
         uu * (du * du) + uv * (du * dv).abs() + vv * (dv * dv)
     }
 
     /// Whether two points where a ray meets the surface are one to within `tolerance`: if on the way from one to the other,
     /// in (u, v), the surface strays from the ray by no more.
-    pub fn same_root(&self, a: [P::Scalar; 2], b: [P::Scalar; 2], tolerance: P::Scalar) -> bool {
+    pub fn same_root(&self, a: [P::Parameter; 2], b: [P::Parameter; 2], tolerance: P::Scalar) -> bool {
         // Between two zeros, a function whose second-order part over the whole way is s strays by a quarter of it at most. The
         // roots themselves may be off by the tolerance.
-        self.strays([a[0] - b[0], a[1] - b[1]]) <= tolerance * P::Scalar::from_u32(8)
+        let lightest = if P::RATIONAL { self.shape.lightest } else { P::Scalar::ONE };
+        self.strays([a[0].minus(b[0]), a[1].minus(b[1])]) <= tolerance * P::Scalar::from_u32(8) * lightest
     }
 }
 
 impl<P: Point> Net<'_, P> {
     /// Bounds b such that one Newton step (du, dv) from anywhere leaves a distance of at most
-    /// `b[0] · du² + b[1] · |du dv| + b[2] · dv²` to the ray, by Taylor's theorem: from the second differences of the control
-    /// points, which bound the second derivatives, times the √3 of sheared planes. For nets in the frame, where coordinates
-    /// are below 1.
+    /// `b[0] · du² + b[1] · |du dv| + b[2] · dv²` to the ray, times the weight there, by Taylor's theorem: from the second
+    /// differences of the control points, which bound the second derivatives, times the √3 of sheared planes. `reach` bounds the
+    /// coordinates, of the net and of the ray's origin.
     ///
-    /// A rational surface's numerator and weight are bounded apart, over the smallest weight; the ray's origin adds up to
-    /// √3 · √3 times the weight's part.
-    pub fn bend(&self) -> [P::Scalar; 3] {
+    /// A rational surface's numerator and weight are bounded apart; the ray's origin adds up to √3 · √3 times the weight's part.
+    pub fn bend(&self, reach: P::Scalar) -> [P::Scalar; 3] {
         let scalar = |k: usize| P::Scalar::from_u32(k as u32);
-        let least = self.points.iter().fold(P::Scalar::INFINITY, |least, p| least.lesser(p.weight()));
         let size = |difference: P| {
             let position = V::<P>::from_array(difference.weighted_position()).length() * P::Scalar::from_f64(SHEAR);
-            if P::RATIONAL { (position + difference.weight().abs() * scalar(3)) / least } else { position }
+            if P::RATIONAL { position + difference.weight().abs() * scalar(3) * reach } else { position }
         };
         let (n, m, columns) = (self.degree_u(), self.degree_v(), self.degrees.columns());
         let second = |points: &[P], stride: usize| {

@@ -5,6 +5,7 @@
 //! Newton's methods decide by the list ([`testing_ray`]), the clipping methods ask for yes or no ([`verdict`]).
 
 use crate::limits::{Acceptance, Limit, Limits, Work};
+use crate::parameter::Parameter;
 use crate::patch::{Crossing, Patch};
 use crate::planes::{DepthRange, Planes};
 use crate::root::Root;
@@ -25,10 +26,10 @@ pub struct Listed<'p, S> {
 
 /// Sends a testing ray from `root` back to depth `nearest`, and calls `visit` with each patch whose box it meets, once each, from the point toward the origin, as long as `visit` says so.
 #[inline(always)]
-pub fn testing_ray<S: Scalar>(
+pub fn testing_ray<S: Scalar, A: Parameter<Scalar = S>>(
     along: &impl Along<S>,
     planes: &Planes<S>,
-    root: &Root<S>,
+    root: &Root<A>,
     nearest: S,
     limits: &Limits<S>,
     work: &mut Work,
@@ -37,7 +38,7 @@ pub fn testing_ray<S: Scalar>(
     let range = DepthRange { min: nearest, max: root.depth };
     S::tell(|| Event::Testing);
     along.back(planes, &range, limits, work, |patch, crossing, work| {
-        let owner = patch.domain().holds(root.u, root.v);
+        let owner = patch.domain().holds(root.u.number(), root.v.number());
         // The owner's box holds the point; another's counts if it reaches between point and origin.
         if owner || reaches(crossing, &range) {
             S::tell(|| Event::Listed { owner });
@@ -74,10 +75,10 @@ pub enum Verdict {
 /// The testing ray's answer, yes or no, for `root`: the clipping methods' verification.
 ///
 /// Source: the paper's section "An Improvement of Bézier Clipping".
-pub fn verdict<S: Scalar>(
+pub fn verdict<S: Scalar, A: Parameter<Scalar = S>>(
     along: &impl Along<S>,
     planes: &Planes<S>,
-    root: &Root<S>,
+    root: &Root<A>,
     nearest: S,
     limits: &Limits<S>,
     work: &mut Work,

@@ -87,6 +87,9 @@ pub enum ViewError {
     /// The eye's largest |coordinate| is more than eight units of the frame, eight to sixteen times that of the scene: near to parallel, its rays
     /// would lose digits. They can be traced one by one.
     Far,
+    /// The eye is near 0, as the scene goes, and so are surfaces much smaller than the scene: turned together with all else they
+    /// would be met less exactly than rays one by one meet them.
+    Near,
     /// The patches are of more or fewer surfaces than the scene has: they are another scene's.
     Patches,
     /// More patches than 32 bits can count.
@@ -100,6 +103,7 @@ impl core::fmt::Display for ViewError {
             ViewError::Ray(error) => write!(f, "the ray of the middle: {error}"),
             ViewError::Flat => f.write_str("the camera's vectors lie in a plane"),
             ViewError::Far => f.write_str("the eye is farther away than eight times the scene's size"),
+            ViewError::Near => f.write_str("the eye is among surfaces that are much smaller than the scene"),
             ViewError::Patches => f.write_str("the patches are of another scene"),
             ViewError::TooLarge => f.write_str("more patches than 32 bits can count"),
         }
@@ -165,13 +169,15 @@ impl<'m, P: Point> View<'m, P> {
     ) -> Result<Self, ViewError> {
         let lens = lens_of(scene, patches, camera)?;
         let (infinity, least) = (P::Scalar::INFINITY, P::Scalar::LEAST);
-        let along =
-            scene.nets().flat_map(|net| net.points().iter()).map(|point| point.turned(&lens.turn).position()[2]);
+        let along = scene
+            .surfaces()
+            .flat_map(|surface| surface.net.points().iter())
+            .map(|point| point.turned(&lens.turn).position()[2]);
         let [low, high] = along.fold([infinity, least], |[low, high], c| [low.lesser(c), high.greater(c)]);
         let middle = if low <= high { (low + high) * P::Scalar::HALF } else { P::Scalar::ZERO };
         let mut points = Arena::new(memory.points);
         let mut surfaces = Arena::new(memory.surfaces);
-        for net in scene.nets() {
+        for Surface { net, .. } in scene.surfaces() {
             let mut sight = Sight { outline: Outline::NOWHERE, near: infinity };
             for point in net.points() {
                 let turned = point.turned(&lens.turn);
@@ -340,7 +346,12 @@ fn lens_of<P: Point>(
     if patches.is_some_and(|patches| patches.surfaces() != scene.len()) {
         return Err(ViewError::Patches);
     }
-    Ok(Lens::of(scene.frame(), camera)?)
+    let lens = Lens::of(scene.frame(), camera)?;
+    // The ray's own coordinates are then much smaller than the scene's, too.
+    if scene.has_apart() && lens.eye_is_apart() {
+        return Err(ViewError::Near);
+    }
+    Ok(lens)
 }
 
 #[cfg(test)]

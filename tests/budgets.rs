@@ -27,6 +27,17 @@ enum Method<'r, S> {
     ClippingCoherent(&'r [Remembered<S>]),
 }
 
+impl<S> Method<'_, S> {
+    /// The same with memory that holds nothing; `None` without memory.
+    fn forgetful<'r>(self, nothing: &'r [Remembered<S>]) -> Option<Method<'r, S>> {
+        match self {
+            Method::Newton | Method::Clipping => None,
+            Method::Coherent(_) => Some(Method::Coherent(nothing)),
+            Method::ClippingCoherent(_) => Some(Method::ClippingCoherent(nothing)),
+        }
+    }
+}
+
 const LINE: u32 = 5;
 
 fn trace<P: Kind>(
@@ -132,7 +143,8 @@ where
     let limits = Limits::<S>::default();
     let mut gave_up = [0_u32; 7];
     let mut with_best = 0;
-    let mut remembered = [vec![Remembered::EMPTY; 32], vec![Remembered::EMPTY; 32]];
+    let nothing = vec![Remembered::EMPTY; 32];
+    let (mut remembered, mut without_memory) = ([nothing.clone(), nothing.clone()], 0);
     for (k, ray) in rays(&prepared, 240).iter().enumerate() {
         let [newton, clips] = remembered.clone();
         let methods = [Method::Newton, Method::Coherent(&newton), Method::Clipping, Method::ClippingCoherent(&clips)];
@@ -142,6 +154,11 @@ where
             if k % 2 == 0 && !memory.is_empty() {
                 remembered[number / 2] = memory;
             }
+            let forgot = method.forgetful(&nothing).map(|method| trace(&prepared, method, ray, &limits));
+            let (memory_led, alone) = (forgot.is_some(), forgot.as_ref().map(|(_, work, _)| *work));
+            // Of a root that was found by two ways the last bits may differ.
+            let other = forgot.and_then(|(answer, ..)| answer.expect("as far").map(|hit| hit.t));
+            let nearest = full.map(|hit| other.map_or(hit.t, |t| t.lesser(hit.t)));
             for (b, (limit, set, counter)) in budgets::<S>().into_iter().enumerate() {
                 let needed = counter(&used);
                 let mut found_before = false;
@@ -149,31 +166,48 @@ where
                     let mut small = limits;
                     set(&mut small, n);
                     let (answer, work, _) = trace(&prepared, method, ray, &small);
-                    assert!(counter(&work) <= n, "{limit}: {} of {n}", counter(&work));
+                    // The search that memory led, and the one without.
+                    let searches = if memory_led { 2 } else { 1 };
+                    assert!(counter(&work) <= searches * n, "{limit}: {} of {n}", counter(&work));
                     if n >= needed {
                         assert_eq!((answer, work), (Ok(full), used));
                         continue;
                     }
-                    // Short of what the ray needs: neither a hit nor a miss, and it says why.
+                    // Short of what the ray needs: without memory it may need less.
+                    let forgot = method.forgetful(&nothing).map(|method| trace(&prepared, method, ray, &small));
+                    if let Some((Ok(hit), alone, _)) = forgot {
+                        assert_eq!((answer, n <= counter(&work)), (Ok(hit), true));
+                        assert!(counter(&alone) <= n && hit.is_some() == full.is_some());
+                        without_memory += 1;
+                        continue;
+                    }
+                    // What memory led into may leave more to the rest than a search without it has.
+                    if let (Some(_), Ok(hit)) = (&forgot, answer) {
+                        assert!(counter(&work) > n && hit.is_some() == full.is_some());
+                        continue;
+                    }
+                    // Neither a hit nor a miss, and it says why.
                     let short = answer.expect_err("a budget that is too small is not an answer");
-                    assert_eq!((short.limit, counter(&work)), (limit, n));
+                    assert_eq!(short.limit, limit);
+                    assert!(counter(&work) >= n);
                     gave_up[b] += 1;
                     with_best += u32::from(short.best.is_some());
                     // What was found by then is a root of the ray, never nearer than the answer; more budget never loses it.
                     assert!(short.best.is_some() || !found_before);
                     found_before = short.best.is_some();
-                    if let (Some(best), Some(full)) = (short.best, full) {
-                        assert!(best.t >= full.t);
+                    if let (Some(best), Some(nearest)) = (short.best, nearest) {
+                        assert!(best.t >= nearest);
                     }
                     assert!(short.best.is_none() || full.is_some());
                     let others = budgets::<S>();
-                    assert!(others.iter().all(|(_, _, counter)| counter(&work) <= counter(&used)));
+                    let most = |counter: fn(&Work) -> u32| counter(&used) + alone.as_ref().map_or(0, counter);
+                    assert!(others.iter().all(|&(_, _, counter)| counter(&work) <= most(counter)));
                 }
             }
         }
     }
-    println!("gave up on {gave_up:?}, {with_best} times with a hit so far");
-    assert!(gave_up.iter().all(|&n| n > 50) && with_best > 100);
+    println!("gave up on {gave_up:?}, {with_best} times with a hit so far; {without_memory} answered without memory");
+    assert!(gave_up.iter().all(|&n| n > 50) && with_best > 100 && without_memory > 5);
 }
 
 #[test]

@@ -84,7 +84,8 @@ fn patches_and_trees_need_what_they_say() {
         let memory = PatchMemory { patches: &mut patches, first: &mut first };
         let tree = with_tree.then_some(TreeMemory { nodes: &mut nodes, links: &mut links });
         let options = Subdivision::default();
-        subdivide(scene.nets(), scene.frame(), &options, &mut scratch.view(), memory, tree).map(|(_, t)| t.is_some())
+        subdivide(scene.surfaces(), scene.frame(), &options, &mut scratch.view(), memory, tree)
+            .map(|(_, t)| t.is_some())
     };
     let sizes = [prepared.patches.len(), prepared.first.len(), prepared.nodes.len(), prepared.links.len()];
     let surfaces = model.surfaces.len();
@@ -107,7 +108,7 @@ fn patches_and_trees_need_what_they_say() {
     // Scratch for exactly the largest net (4 × 4 points), and for one point less: the first surface that does not fit.
     let ask = |view: &mut patchray::subdivide::SubdivideScratchView<'_, _>, options: &Subdivision<f32>| {
         let memory = PatchMemory { patches: &mut [], first: &mut [] };
-        subdivide(scene.nets(), scene.frame(), options, view, memory, None).map(|_| ())
+        subdivide(scene.surfaces(), scene.frame(), options, view, memory, None).map(|_| ())
     };
     let options = Subdivision::default();
     let exact = ask(&mut SubdivideScratch::<_, 16>::new().view(), &options);
@@ -208,8 +209,8 @@ fn rubbish_in_lent_memory_changes_nothing() {
         let mut view = scratch.view();
         let nothing = PatchMemory { patches: &mut [], first: &mut [] };
         let elsewhere = other.scene();
-        let _ = subdivide(elsewhere.nets(), elsewhere.frame(), &Subdivision::default(), &mut view, nothing, None);
-        subdivide(scene.nets(), scene.frame(), &Subdivision::default(), &mut view, memory, Some(tree)).unwrap();
+        let _ = subdivide(elsewhere.surfaces(), elsewhere.frame(), &Subdivision::default(), &mut view, nothing, None);
+        subdivide(scene.surfaces(), scene.frame(), &Subdivision::default(), &mut view, memory, Some(tree)).unwrap();
         let patches = Patches::new(&d.patches, &d.first);
         let memory =
             GridMemory { grids: &mut d.grids, offsets: &mut d.grid_offsets, references: &mut d.grid_references };
@@ -309,9 +310,11 @@ fn views_over_rubbish_neither_panic_nor_run_on() {
                 let _ = trace(donor, &mut memory, round as u32, ray, &limits);
                 let slots = if index(&mut random, 10) == 0 { 1 } else { 40 };
                 let Some(answers) = trace(&target, &mut memory[..slots], round as u32, ray, &limits) else { continue };
-                for (answer, work) in answers {
-                    assert!(work.surfaces_tested <= 50 && work.nodes_visited <= 300 && work.patches_tested <= 300);
-                    assert!(work.voxels_visited <= 200 && work.newton_steps <= 500);
+                // With memory: the search that it led, and the one without.
+                for ((answer, work), searches) in answers.into_iter().zip(1..) {
+                    let counts = [work.surfaces_tested, work.nodes_visited, work.patches_tested];
+                    assert!(counts.into_iter().zip([50, 300, 300]).all(|(count, budget)| count <= searches * budget));
+                    assert!(work.voxels_visited <= searches * 200 && work.newton_steps <= searches * 500);
                     kinds[match answer {
                         Ok(None) => 0,
                         Ok(Some(_)) => 1,
@@ -320,7 +323,7 @@ fn views_over_rubbish_neither_panic_nor_run_on() {
                     if let Ok(Some(hit)) = answer {
                         let _ = target.scene().normal(&hit, &mut Basis::<S, 16>::new().view());
                     }
-                    let _ = (target.scene().nets().count(), target.grids().longest_walks());
+                    let _ = (target.scene().surfaces().count(), target.grids().longest_walks());
                 }
             }
         }

@@ -98,24 +98,24 @@ fn domains_tile_and_boxes_enclose() {
 #[test]
 fn a_ray_is_critical_by_its_angle_to_the_patch() {
     fn check<S: Scalar>() {
-        // A cap of breadth 2 and height 1/8, in one patch: control points from 0 to 1/4 above the corners.
+        // A cap of breadth 2 and height 1/64, in one patch: control points from 0 to 1/32 above the corners.
         let mut cap = elevate(&parallelogram([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]), 2, 2);
-        cap.points[4][2] = 0.25;
+        cap.points[4][2] = 0.03125;
         let model = single(cap);
         let prepared = at_flatness::<Plain<S>>(&model, 1.0);
         let [patch] = prepared.patches.as_slice() else { panic!("one patch") };
         let critical = |d: [f64; 3], factor: f64| {
-            let planes = planes(&prepared, add([0.0, 0.0, 0.125], -3.0, d), d).unwrap();
+            let planes = planes(&prepared, add([0.0, 0.0, 0.015625], -3.0, d), d).unwrap();
             let crossing = patch.bounds().crossing(&planes).unwrap();
             patch.is_critical(&crossing, S::from_f64(factor))
         };
         assert!(!critical([0.0, 0.0, 1.0], 1.0), "along the normal");
         assert!(critical([1.0, 0.0, 0.0], 1.0) && critical([0.6, 0.8, 0.0], 1.0), "in the plane");
-        // b/h is 2 / 0.25 = 8 along an axis: tan α just below and above it.
-        assert!(!critical([7.9, 0.0, 1.0], 1.0) && critical([8.1, 0.0, 1.0], 1.0));
+        // b/h is 2 / 0.03125 = 64 along an axis: tan α just below and above it.
+        assert!(!critical([63.2, 0.0, 1.0], 1.0) && critical([64.8, 0.0, 1.0], 1.0));
         // The factor scales the bound.
-        assert!(!critical([3.9, 0.0, 1.0], 0.5) && critical([4.1, 0.0, 1.0], 0.5));
-        assert!(!critical([15.9, 0.0, -1.0], 2.0) && critical([16.1, 0.0, -1.0], 2.0));
+        assert!(!critical([31.2, 0.0, 1.0], 0.5) && critical([32.8, 0.0, 1.0], 0.5));
+        assert!(!critical([127.2, 0.0, -1.0], 2.0) && critical([128.8, 0.0, -1.0], 2.0));
         assert!(critical([1e-3, 0.0, 1.0], 0.0), "a factor of 0 flags all but the normal");
     }
     check::<f32>();

@@ -4,6 +4,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use patchray::bernstein::{Degrees, Direction, Tuple};
 use patchray::casteljau::restrict;
 use patchray::clip::{Clip, Noise, clip};
+use patchray::parameter::{Number, Parameter};
 use std::hint::black_box;
 
 /// A gently bent sheet over the unit square, seen from where (0.4, 0.6) lies on the ray.
@@ -29,7 +30,7 @@ fn benches(criterion: &mut Criterion) {
                 let Clip::Part(kept) = clip(degrees, &part, Direction::U, &noise) else {
                     panic!("the sheet meets the ray");
                 };
-                restrict(degrees, &mut part, Direction::U, kept);
+                restrict(degrees, &mut part, Direction::U, kept.map(Number::new));
                 part[0]
             });
         });

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use patchray::ray::Incidence;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -11,7 +12,7 @@ use crate::scene::camera::View;
 use crate::scene::rays::RayLine;
 use crate::scene::trace::Precision;
 
-/// How far a right answer may be off along the ray, as shares of the model's diagonal.
+/// How far a right answer may be off along the ray, as shares of a size: the model's diagonal, or that of the surface hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Allowance {
     /// Off across the surface: along the ray it is this over |cos(d, n)|, n being the normal at the hit.
@@ -44,9 +45,21 @@ pub struct Truth {
     pub roots: usize,
     /// Whether an unresolved part leaves the answer open.
     pub open: bool,
-    /// How far the ray may be displaced before the answer changes kind, as a share of the diagonal: see [`Verdict::margin`].
+    /// How far the ray may be displaced before the answer changes kind, as a share of the size of what it hits or nearly hits:
+    /// see [`Verdict::margin`].
     pub margin: f64,
+    /// The size of what the closest root lies on; 0 where nobody said, and the model's diagonal is meant.
+    pub size: f64,
+    /// Where the ray enters and leaves within so little depth that an answer may take it for a graze: the root at which it
+    /// leaves. An answer that says so may name any point from the closest root up to there.
+    pub leaves: Option<f64>,
+    /// Whether the ray lies in the surface from the closest root on: that root is then as sharp as the surface's outline, and
+    /// its angle to the surface excuses nothing.
+    pub contact: bool,
 }
+
+/// Where a ray that lies in a surface crosses the outline, the angle between them has a sine of a tenth at least.
+const OUTLINE: f64 = 0.1;
 
 impl From<&Verdict> for Truth {
     fn from(verdict: &Verdict) -> Self {
@@ -55,6 +68,8 @@ impl From<&Verdict> for Truth {
             roots: verdict.roots.len(),
             open: verdict.unresolved > 0 && verdict.margin == 0.0,
             margin: verdict.margin,
+            size: verdict.roots.first().map_or(0.0, |root| root.unit),
+            ..Truth::default()
         }
     }
 }
@@ -127,12 +142,13 @@ impl Agreement {
         agreement
     }
 
-    /// Adds the answer to the ray of this `direction`; `diagonal` is the model's.
-    pub fn add(&mut self, outcome: &Outcome, truth: &Truth, direction: [f64; 3], diagonal: f64, allowance: &Allowance) {
+    /// Adds the answer to the ray of this `direction`; the allowance is in shares of `size`.
+    pub fn add(&mut self, outcome: &Outcome, truth: &Truth, direction: [f64; 3], size: f64, allowance: &Allowance) {
+        let near = |found, t| is_near(found, t, truth, direction, size, allowance);
         let count = match (outcome, truth.closest) {
             (Outcome::GaveUp { .. } | Outcome::Refused(_) | Outcome::Invalid, _) => &mut self.unanswered,
             (Outcome::Miss, None) => &mut self.right,
-            (Outcome::Hit(found), Some(t)) if is_near(found, t, direction, diagonal, allowance) => &mut self.right,
+            (Outcome::Hit(found), Some(t)) if near(found, t) => &mut self.right,
             _ if truth.open => &mut self.undecided,
             (Outcome::Miss, Some(_)) => &mut self.missed,
             (Outcome::Hit(_), None) => &mut self.phantom,
@@ -142,26 +158,31 @@ impl Agreement {
     }
 }
 
-fn is_near(found: &Found, t: f64, direction: [f64; 3], diagonal: f64, allowance: &Allowance) -> bool {
+fn is_near(found: &Found, t: f64, truth: &Truth, direction: [f64; 3], size: f64, allowance: &Allowance) -> bool {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let speed = dot(direction, direction).sqrt();
     // Where there is no normal, nothing excuses more than straight on.
-    let cosine = found.normal.map_or(1.0, |normal| dot(normal, direction).abs() / speed);
-    let allowed = (allowance.across / cosine).min(allowance.most) * diagonal;
-    (found.t - t).abs() * speed <= allowed
+    let cosine = found.normal.shown().map_or(1.0, |normal| dot(normal, direction).abs() / speed);
+    let cosine = if truth.contact { OUTLINE } else { cosine };
+    let allowed = (allowance.across / cosine).min(allowance.most) * size;
+    let last = truth.leaves.filter(|_| found.incidence != Incidence::Crossing).unwrap_or(t);
+    (t - found.t) * speed <= allowed && (found.t - last) * speed <= allowed
 }
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
+    use crate::scanline::Normal;
 
     fn hit(t: f64, normal: Option<[f64; 3]>) -> Outcome {
-        Outcome::Hit(Found { t, u: 0.5, v: 0.5, surface: 0, normal, grazing: false })
+        let normal = normal.map_or(Normal::Nowhere, Normal::There);
+        Outcome::Hit(Found { t, u: 0.5, v: 0.5, surface: 0, normal, incidence: Incidence::Crossing })
     }
 
     fn judged(outcome: Outcome, closest: Option<f64>, open: bool) -> Agreement {
         let mut agreement = Agreement::default();
-        let truth = Truth { closest, roots: usize::from(closest.is_some()), open, margin: 1.0 };
+        let truth = Truth { closest, roots: usize::from(closest.is_some()), open, margin: 1.0, ..Truth::default() };
         agreement.add(&outcome, &truth, [0.0, 0.0, 2.0], 10.0, &allowance(Precision::F64));
         agreement
     }
@@ -176,6 +197,33 @@ mod tests {
         assert_eq!(judged(hit(2.0, None), Some(1.0), false), Agreement { wrong: 1, ..none });
         let gave_up = Outcome::GaveUp { limit: "patches", best: None };
         assert_eq!(judged(gave_up, None, false), Agreement { unanswered: 1, ..none });
+    }
+
+    #[test]
+    fn a_graze_is_right_up_to_where_the_ray_leaves_and_contact_where_it_begins() {
+        let up = Some([0.0, 0.0, 1.0]);
+        let right = |outcome: Outcome, truth: Truth| {
+            let mut agreement = Agreement::default();
+            agreement.add(&outcome, &truth, [0.0, 0.0, 2.0], 10.0, &allowance(Precision::F64));
+            agreement.right == 1
+        };
+        let graze = |t: f64| {
+            Outcome::Hit(Found {
+                t,
+                u: 0.5,
+                v: 0.5,
+                surface: 0,
+                normal: Normal::There([0.0, 0.0, 1.0]),
+                incidence: Incidence::Grazing,
+            })
+        };
+        let thin = Truth { closest: Some(1.0), leaves: Some(1.1), margin: 1.0, ..Truth::default() };
+        assert!(right(graze(1.05), thin) && right(graze(1.1), thin) && right(hit(1.0, up), thin));
+        assert!(!right(graze(1.2), thin) && !right(graze(0.9), thin) && !right(hit(1.1, up), thin));
+        assert!(!right(graze(f64::NAN), thin));
+        let along = Truth { closest: Some(1.0), contact: true, margin: 1.0, ..Truth::default() };
+        let flat = Some([0.0, 1.0, 0.0]);
+        assert!(right(hit(1.0 + 4e-8, flat), along) && !right(hit(1.0 + 6e-8, flat), along));
     }
 
     #[test]

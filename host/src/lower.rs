@@ -274,7 +274,7 @@ impl<P: FromFile> Lowered<P> {
         let scene = Scene::new(self.header, &self.points, &self.surfaces, &self.offsets, &self.references);
         let tree = wants_tree.then_some(TreeMemory { nodes: &mut [], links: &mut [] });
         let nothing = PatchMemory { patches: &mut [], first: &mut [] };
-        let needs = match subdivide(scene.nets(), scene.frame(), options, &mut scratch.view(), nothing, tree) {
+        let needs = match subdivide(scene.surfaces(), scene.frame(), options, &mut scratch.view(), nothing, tree) {
             Ok(_) => Default::default(),
             Err(SubdivideError::Memory(needs)) => needs,
             Err(error) => return Err(refused(error)),
@@ -290,7 +290,7 @@ impl<P: FromFile> Lowered<P> {
         self.links = slots.take(Kind::TreeLinks, 0, needs.links)?;
         let memory = PatchMemory { patches: &mut self.patches, first: &mut self.first };
         let tree = wants_tree.then_some(TreeMemory { nodes: &mut self.nodes, links: &mut self.links });
-        subdivide(scene.nets(), scene.frame(), options, &mut scratch.view(), memory, tree).map_err(refused)?;
+        subdivide(scene.surfaces(), scene.frame(), options, &mut scratch.view(), memory, tree).map_err(refused)?;
         Ok(())
     }
 

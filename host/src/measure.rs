@@ -388,7 +388,7 @@ mod tests {
 
     #[test]
     fn points_beyond_the_roots_were_found_twice() {
-        let truth = |roots, open| Truth { closest: Some(1.0), roots, open, margin: 1.0 };
+        let truth = |roots, open| Truth { closest: Some(1.0), roots, open, margin: 1.0, ..Truth::default() };
         let truths = [truth(2, false), truth(2, false), truth(0, true)];
         let each =
             [1, 5, 7].map(|intersection_points| Work { intersection_points, newton_steps: 9, ..Work::default() });

@@ -12,7 +12,7 @@ use patchray::bernstein::Basis;
 use patchray::limits::{Limits, Work};
 use patchray::method::Remembered;
 use patchray::point::Point;
-use patchray::ray::{Hit, Interval, RayError};
+use patchray::ray::{Hit, Incidence, Interval, RayError};
 use patchray::scalar::Scalar;
 use patchray::scene::Scene;
 
@@ -35,10 +35,39 @@ pub struct Found {
     pub v: f64,
     /// The surface's index in the model.
     pub surface: usize,
-    /// The unit normal along ∂S/∂u × ∂S/∂v; `None` where there is none.
-    pub normal: Option<[f64; 3]>,
-    /// Whether the ray is tangent there to working precision.
-    pub grazing: bool,
+    /// The unit normal there, if there is one.
+    pub normal: Normal,
+    /// How the ray meets the surface there.
+    pub incidence: Incidence,
+}
+
+/// The unit normal at a hit, along ∂S/∂u × ∂S/∂v.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Normal {
+    /// The surface has one there.
+    There([f64; 3]),
+    /// The surface has none there, as at the apex of a cone. It has this one at a place nearby.
+    Nearby([f64; 3]),
+    /// The surface has none there and none nearby, as one that is a curve.
+    Nowhere,
+}
+
+impl Normal {
+    /// The surface's, if it has one there.
+    pub fn there(self) -> Option<[f64; 3]> {
+        match self {
+            Normal::There(normal) => Some(normal),
+            Normal::Nearby(_) | Normal::Nowhere => None,
+        }
+    }
+
+    /// What pictures show: where there is none that of a place nearby, so that the point looks as those around it do.
+    pub fn shown(self) -> Option<[f64; 3]> {
+        match self {
+            Normal::There(normal) | Normal::Nearby(normal) => Some(normal),
+            Normal::Nowhere => None,
+        }
+    }
 }
 
 /// What became of a ray. `H` is what it was asked for: one hit, the closest or any, or a list of all, which is not empty.
@@ -365,18 +394,27 @@ fn outcome<H: Hits<P::Scalar>, P: Point>(
     }
 }
 
+/// How far toward the middle of its surface a place is nearby, as a share of the way.
+const NEARBY: f64 = 1e-3;
+
 /// A hit of a scene in `f64`, with its normal.
 pub fn found<P: Point>(scene: &Scene<'_, P>, basis: &mut Basis<P::Scalar, ORDER>, hit: &Hit<P::Scalar>) -> Found {
-    let normal = scene.normal(hit, &mut basis.view());
-    // A surface without a normal there has the zero vector. The basis is large enough for every degree.
-    let normal = normal.ok().map(|normal| normal.map(|c| c.to_f64())).filter(|normal| *normal != [0.0; 3]);
+    // The basis is large enough for every degree.
+    let mut normal = |hit: &Hit<P::Scalar>| {
+        scene.normal(hit, &mut basis.view()).ok().flatten().map(|normal| normal.map(Scalar::to_f64))
+    };
+    let normal = normal(hit).map(Normal::There).unwrap_or_else(|| {
+        let inward = |c: P::Scalar| c + (P::Scalar::HALF - c) * P::Scalar::from_f64(NEARBY);
+        let nearby = Hit { u: inward(hit.u), v: inward(hit.v), ..*hit };
+        normal(&nearby).map_or(Normal::Nowhere, Normal::Nearby)
+    });
     Found {
         t: hit.t.to_f64(),
         u: hit.u.to_f64(),
         v: hit.v.to_f64(),
         surface: hit.surface as usize,
         normal,
-        grazing: hit.grazing,
+        incidence: hit.incidence,
     }
 }
 

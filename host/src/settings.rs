@@ -39,7 +39,7 @@ pub struct Flags {
     /// The share of an interval that a clip has to remove, else the interval is bisected [default: 0.2]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true, help_heading = "Tracing")]
     pub clip_threshold: Option<f64>,
-    /// How far from the ray a root may lie, as a share of the scene's size [default: 4e-13 in f64, 4e-6 in f32]
+    /// How far from the ray a root may lie, as a share of its surface's size [default: 2e-15 in f64, 1e-6 in f32]
     #[arg(long, value_name = "SHARE", value_parser = positive, allow_hyphen_values = true, help_heading = "Tracing")]
     pub tolerance: Option<f64>,
     /// How far a patch may be from flat, as a share of the scene's diagonal
@@ -123,7 +123,7 @@ pub struct Settings {
     pub newton_starts: u32,
     /// The share of an interval that a clip has to remove, else the interval is bisected.
     pub clip_threshold: f64,
-    /// How far from the ray a root may lie, in the kernel's frame of the scene; `None` for the precision's default.
+    /// How far from the ray a root may lie, as a share of its surface's size; `None` for the precision's default.
     pub tolerance: Option<f64>,
     /// How far a patch may be from flat, as a share of the scene's diagonal.
     pub flatness: f64,
@@ -281,7 +281,7 @@ mod tests {
         assert_eq!((limits.newton_starts, limits.clip_threshold, limits.tolerance), (1, 0.3, 0.25));
         let finer = Flags { tolerance: Some(0.125), ..flags.clone() };
         let of_scene = Settings::of_scene(&finer, &trace, &source).expect("valid");
-        assert_eq!((of_scene.tolerance, Settings::default().limits::<f32>().tolerance), (Some(0.125), 4e-6));
+        assert_eq!((of_scene.tolerance, Settings::default().limits::<f32>().tolerance), (Some(0.125), 1e-6));
 
         let limit =
             |name: &str, value| crate::scene::trace::LimitSetting { name: name.to_owned(), value, span: 18..23 };

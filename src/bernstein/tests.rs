@@ -1,6 +1,7 @@
 //! The parts of evaluation that the public face does not show apart.
 
 use super::*;
+use crate::parameter::{Number, Parameter};
 use crate::point::{Plain, Point, Weighted};
 use crate::surface::Net;
 use patchray_host::scene::shapes::Random;
@@ -40,7 +41,8 @@ where
         }
         .map(P::Scalar::from_f64);
         let one = net.jet(u, v, &mut Basis::<P::Scalar, 0>::new().view()).unwrap();
-        let other = jet_any_degree(net.degrees(), &points, [u, v], &mut basis.view(), |p| p).unwrap();
+        let other =
+            jet_any_degree(net.degrees(), &points, [u, v].map(P::Parameter::new), &mut basis.view(), |p| p).unwrap();
         for (a, b) in [(one.point, other.point), (one.du, other.du), (one.dv, other.dv)] {
             let (p, q) = (a.weighted_position(), b.weighted_position());
             assert!((0..3).all(|k| (p[k] - q[k]).abs() <= allowance), "{u:?} {v:?}: {a:?} {b:?}");
@@ -66,7 +68,7 @@ fn bernstein_polynomials_of_any_degree_sum_to_one_and_their_derivatives_to_zero(
     let mut out = heapless::Vec::<Terms<f64>, 16>::new();
     for degree in 1..=MAX_DEGREE {
         for t in [0.0, 0.125, 0.3, 0.5, 0.9, 1.0] {
-            bernstein(degree, t, &mut out).unwrap();
+            bernstein(degree, Number::new(t), &mut out).unwrap();
             assert_eq!(out.len(), degree + 1);
             for (k, expected) in [1.0, 0.0, 0.0].into_iter().enumerate() {
                 let sum: f64 = out.iter().map(|terms| terms[k]).sum();
@@ -84,5 +86,5 @@ fn bernstein_polynomials_of_any_degree_sum_to_one_and_their_derivatives_to_zero(
             }
         }
     }
-    assert_eq!(bernstein(16, 0.5, &mut out), Err(Full));
+    assert_eq!(bernstein(16, Number::new(0.5), &mut out), Err(Full));
 }

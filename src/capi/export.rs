@@ -236,7 +236,7 @@ functions! {
     /// first. scan_line numbers the line, from 0 to 0xfffffffe: a number that no earlier line with this memory had begins anew.
     /// All else as for newton_closest.
     newton_coherent_closest: patchray_newton_coherent_closest_f32,
-    /// The unit normal at a hit, along dS/du x dS/dv; 0, 0, 0 where the surface has none.
+    /// The unit normal at a hit, along dS/du x dS/dv; 0, 0, 0 where the surface has none, as at the apex of a cone.
     normal: patchray_normal_f32,
 }
 

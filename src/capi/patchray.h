@@ -95,10 +95,10 @@
 #define PATCHRAY_NEWTON_WORDS_F32 435
 
 // Scratch for the clipping methods, up to degrees 3 x 3.
-#define PATCHRAY_CLIP_CUBIC_WORDS_F32 262
+#define PATCHRAY_CLIP_CUBIC_WORDS_F32 408
 
 // The same, for any degrees.
-#define PATCHRAY_CLIP_WORDS_F32 1018
+#define PATCHRAY_CLIP_WORDS_F32 1164
 
 // Scratch for patches, up to degrees 3 x 3.
 #define PATCHRAY_SUBDIVIDE_CUBIC_WORDS_F32 205
@@ -113,10 +113,10 @@
 #define PATCHRAY_NEWTON_WORDS_F64 867
 
 // The clipping methods in double precision, up to degrees 3 x 3.
-#define PATCHRAY_CLIP_CUBIC_WORDS_F64 518
+#define PATCHRAY_CLIP_CUBIC_WORDS_F64 810
 
 // The same, for any degrees.
-#define PATCHRAY_CLIP_WORDS_F64 2030
+#define PATCHRAY_CLIP_WORDS_F64 2322
 
 // Patches in double precision, up to degrees 3 x 3.
 #define PATCHRAY_SUBDIVIDE_CUBIC_WORDS_F64 237
@@ -238,7 +238,7 @@
 #define PATCHRAY_GAVE_UP_SPANS -50
 
 // The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
-#define PATCHRAY_LAYOUT 2
+#define PATCHRAY_LAYOUT 3
 
 // What a hit's `surface` is where there is none.
 #define PATCHRAY_NO_SURFACE 4294967295
@@ -255,6 +255,15 @@
 // `patchray_limits.acceptance`: only what is proved, slower. newton_closest, newton_any and newton_line take either for the
 // same: they prove nothing.
 #define PATCHRAY_ACCEPTANCE_PROVED 1
+
+// `patchray_hit.incidence`: the ray passes through the surface.
+#define PATCHRAY_CROSSING 0
+
+// `patchray_hit.incidence`: the ray is tangent to working precision, and t, u, v are known to half the digits.
+#define PATCHRAY_GRAZING 1
+
+// `patchray_hit.incidence`: the ray lies in the surface for a stretch, to working precision, and t is where it begins.
+#define PATCHRAY_CONTACT 2
 
 // A surface to build a scene of: of degrees degree_u x degree_v, (degree_u + 1)(degree_v + 1) control points, the index in u
 // the outer one.
@@ -294,8 +303,8 @@ typedef struct {
 
 // A surface of a scene: a slot of its table.
 typedef struct {
-  // Its box, then the bounds on its second derivatives.
-  float numbers[9];
+  // Its box, the bounds on its second derivatives, its size, its largest coordinate, its least weight.
+  float numbers[12];
   // Its first control point, and its degrees.
   uint32_t counts[3];
 } patchray_surface_f32;
@@ -435,7 +444,7 @@ typedef struct {
   float origin[3];
   // What one unit of t adds.
   float direction[3];
-  // The least t that counts, such as 0.
+  // The least t that counts, such as 0; -INFINITY if all that lies behind the origin counts too.
   float t_min;
   // The largest t that counts, such as INFINITY.
   float t_max;
@@ -488,8 +497,8 @@ typedef struct {
   float v;
   // The surface's number, in the order of the nets; PATCHRAY_NO_SURFACE if there is no hit.
   uint32_t surface;
-  // 1 if the ray is tangent there to working precision: t, u, v are then known to half the digits. Else 0.
-  uint32_t grazing;
+  // PATCHRAY_CROSSING, PATCHRAY_GRAZING or PATCHRAY_CONTACT; without a hit PATCHRAY_CROSSING.
+  uint32_t incidence;
 } patchray_hit_f32;
 
 // What one call did.
@@ -605,8 +614,8 @@ typedef struct {
 
 // A surface of a scene: a slot of its table.
 typedef struct {
-  // Its box, then the bounds on its second derivatives.
-  double numbers[9];
+  // Its box, the bounds on its second derivatives, its size, its largest coordinate, its least weight.
+  double numbers[12];
   // Its first control point, and its degrees.
   uint32_t counts[3];
 } patchray_surface_f64;
@@ -746,7 +755,7 @@ typedef struct {
   double origin[3];
   // What one unit of t adds.
   double direction[3];
-  // The least t that counts, such as 0.
+  // The least t that counts, such as 0; -INFINITY if all that lies behind the origin counts too.
   double t_min;
   // The largest t that counts, such as INFINITY.
   double t_max;
@@ -799,8 +808,8 @@ typedef struct {
   double v;
   // The surface's number, in the order of the nets; PATCHRAY_NO_SURFACE if there is no hit.
   uint32_t surface;
-  // 1 if the ray is tangent there to working precision: t, u, v are then known to half the digits. Else 0.
-  uint32_t grazing;
+  // PATCHRAY_CROSSING, PATCHRAY_GRAZING or PATCHRAY_CONTACT; without a hit PATCHRAY_CROSSING.
+  uint32_t incidence;
 } patchray_hit_f64;
 
 // The grids over the patches of each surface. What the coherent methods need.
@@ -953,7 +962,7 @@ typedef struct {
   float x[2];
   // The least and the largest y; both the same where all rays are in one row.
   float y[2];
-  // The least t that counts, such as 0.
+  // The least t that counts, such as 0. What lies behind the eye does not count, whatever it is.
   float t_min;
   // The largest t that counts, such as INFINITY.
   float t_max;
@@ -1087,7 +1096,7 @@ typedef struct {
   double x[2];
   // The least and the largest y; both the same where all rays are in one row.
   double y[2];
-  // The least t that counts, such as 0.
+  // The least t that counts, such as 0. What lies behind the eye does not count, whatever it is.
   double t_min;
   // The largest t that counts, such as INFINITY.
   double t_max;
@@ -1247,7 +1256,7 @@ int32_t patchray_newton_coherent_closest_f32(const patchray_scene_f32 *scene,
                                              patchray_hit_f32 *hit,
                                              patchray_work *work);
 
-// The unit normal at a hit, along dS/du x dS/dv; 0, 0, 0 where the surface has none.
+// The unit normal at a hit, along dS/du x dS/dv; 0, 0, 0 where the surface has none, as at the apex of a cone.
 int32_t patchray_normal_f32(const patchray_scene_f32 *scene,
                             const patchray_hit_f32 *hit,
                             float (*normal)[3]);

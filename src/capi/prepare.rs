@@ -210,8 +210,7 @@ pub(super) unsafe fn patches_build<P: Point>(
         unsafe { memory.set(patchray_patches_memory { wrong_surface, ..lent }) };
         Err(code)
     };
-    let nets = scene.nets();
-    let (needs, code) = match subdivide(nets, scene.frame(), &options, &mut scratch, room, room_of_tree) {
+    let (needs, code) = match subdivide(scene.surfaces(), scene.frame(), &options, &mut scratch, room, room_of_tree) {
         Ok((patches, tree)) => {
             let (nodes, links) = tree.map_or((0, 0), |tree| (tree.nodes().len(), tree.links().len()));
             ([patches.all().len(), scene.len().saturating_add(1), nodes, links], PATCHRAY_OK)

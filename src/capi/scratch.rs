@@ -13,9 +13,9 @@ pub const PATCHRAY_NEWTON_CUBIC_WORDS_F32: usize = 39;
 /// The same, for any degrees.
 pub const PATCHRAY_NEWTON_WORDS_F32: usize = 435;
 /// Scratch for the clipping methods, up to degrees 3 x 3.
-pub const PATCHRAY_CLIP_CUBIC_WORDS_F32: usize = 262;
+pub const PATCHRAY_CLIP_CUBIC_WORDS_F32: usize = 408;
 /// The same, for any degrees.
-pub const PATCHRAY_CLIP_WORDS_F32: usize = 1018;
+pub const PATCHRAY_CLIP_WORDS_F32: usize = 1164;
 /// Scratch for patches, up to degrees 3 x 3.
 pub const PATCHRAY_SUBDIVIDE_CUBIC_WORDS_F32: usize = 205;
 /// The same, for any degrees.
@@ -25,9 +25,9 @@ pub const PATCHRAY_NEWTON_CUBIC_WORDS_F64: usize = 75;
 /// The same, for any degrees.
 pub const PATCHRAY_NEWTON_WORDS_F64: usize = 867;
 /// The clipping methods in double precision, up to degrees 3 x 3.
-pub const PATCHRAY_CLIP_CUBIC_WORDS_F64: usize = 518;
+pub const PATCHRAY_CLIP_CUBIC_WORDS_F64: usize = 810;
 /// The same, for any degrees.
-pub const PATCHRAY_CLIP_WORDS_F64: usize = 2030;
+pub const PATCHRAY_CLIP_WORDS_F64: usize = 2322;
 /// Patches in double precision, up to degrees 3 x 3.
 pub const PATCHRAY_SUBDIVIDE_CUBIC_WORDS_F64: usize = 237;
 /// The same, for any degrees.

@@ -124,7 +124,7 @@ pub(super) fn of_view(error: ViewError) -> Code {
         ViewError::Memory(_) => PATCHRAY_MEMORY,
         ViewError::Ray(error) => of_ray(error),
         ViewError::Flat => PATCHRAY_CAMERA_FLAT,
-        ViewError::Far => PATCHRAY_CAMERA_FAR,
+        ViewError::Far | ViewError::Near => PATCHRAY_CAMERA_FAR,
         ViewError::Patches => PATCHRAY_TABLES,
         ViewError::TooLarge => PATCHRAY_TOO_LARGE,
     }

@@ -8,7 +8,7 @@ use crate::bernstein::Basis;
 use crate::limits::{GaveUp, Limits, Work};
 use crate::method::{clipping, clipping_coherent, newton, newton_coherent};
 use crate::point::Point;
-use crate::ray::{Hit, Interval, Ray};
+use crate::ray::{Hit, Incidence, Interval, Ray};
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use heapless::Vec;
@@ -17,8 +17,14 @@ impl<S: Scalar> From<Option<Hit<S>>> for patchray_hit<S> {
     #[inline(always)]
     fn from(hit: Option<Hit<S>>) -> Self {
         match hit {
-            Some(Hit { t, u, v, surface, grazing }) => patchray_hit { t, u, v, surface, grazing: u32::from(grazing) },
-            None => patchray_hit { t: S::ZERO, u: S::ZERO, v: S::ZERO, surface: PATCHRAY_NO_SURFACE, grazing: 0 },
+            Some(Hit { t, u, v, surface, incidence }) => patchray_hit { t, u, v, surface, incidence: incidence as u32 },
+            None => patchray_hit {
+                t: S::ZERO,
+                u: S::ZERO,
+                v: S::ZERO,
+                surface: PATCHRAY_NO_SURFACE,
+                incidence: PATCHRAY_CROSSING,
+            },
         }
     }
 }
@@ -344,10 +350,10 @@ pub(super) unsafe fn normal<P: Point>(
         return Err(PATCHRAY_OPTION);
     }
     let mut basis = Basis::<P::Scalar, 16>::new();
-    let found = scene.normal(&Hit { t, u, v, surface, grazing: false }, &mut basis.view());
+    let found = scene.normal(&Hit { t, u, v, surface, incidence: Incidence::Crossing }, &mut basis.view());
     let normal = found.map_err(|GaveUp { limit, .. }| of_limit(limit))?;
     // SAFETY: the caller's.
-    unsafe { place.set(normal) };
+    unsafe { place.set(normal.unwrap_or([P::Scalar::ZERO; 3])) };
     Ok(PATCHRAY_OK)
 }
 

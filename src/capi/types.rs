@@ -8,13 +8,14 @@ use crate::frame::Frame;
 use crate::grid::GridSlot;
 use crate::method::{Followed, Remembered};
 use crate::patch::{Parallelepiped, Patch};
+use crate::ray::Incidence;
 use crate::scalar::Scalar;
 use crate::scene::SurfaceSlot;
 use crate::span::Span;
 use crate::view::{Sight, ViewHeader};
 
 /// The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
-pub const PATCHRAY_LAYOUT: u32 = 2;
+pub const PATCHRAY_LAYOUT: u32 = 3;
 
 /// What a hit's `surface` is where there is none.
 pub const PATCHRAY_NO_SURFACE: u32 = 0xffff_ffff;
@@ -30,6 +31,13 @@ pub const PATCHRAY_ACCEPTANCE_PAPER: u32 = 0;
 /// `patchray_limits.acceptance`: only what is proved, slower. newton_closest, newton_any and newton_line take either for the
 /// same: they prove nothing.
 pub const PATCHRAY_ACCEPTANCE_PROVED: u32 = 1;
+
+/// `patchray_hit.incidence`: the ray passes through the surface.
+pub const PATCHRAY_CROSSING: u32 = 0;
+/// `patchray_hit.incidence`: the ray is tangent to working precision, and t, u, v are known to half the digits.
+pub const PATCHRAY_GRAZING: u32 = 1;
+/// `patchray_hit.incidence`: the ray lies in the surface for a stretch, to working precision, and t is where it begins.
+pub const PATCHRAY_CONTACT: u32 = 2;
 
 /// A surface to build a scene of: of degrees degree_u x degree_v, (degree_u + 1)(degree_v + 1) control points, the index in u
 /// the outer one.
@@ -75,8 +83,8 @@ pub struct patchray_options<S> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct patchray_surface<S> {
-    /// Its box, then the bounds on its second derivatives.
-    pub numbers: [S; 9],
+    /// Its box, the bounds on its second derivatives, its size, its largest coordinate, its least weight.
+    pub numbers: [S; 12],
     /// Its first control point, and its degrees.
     pub counts: [u32; 3],
 }
@@ -421,7 +429,7 @@ pub struct patchray_line<S> {
     pub x: [S; 2],
     /// The least and the largest y; both the same where all rays are in one row.
     pub y: [S; 2],
-    /// The least t that counts, such as 0.
+    /// The least t that counts, such as 0. What lies behind the eye does not count, whatever it is.
     pub t_min: S,
     /// The largest t that counts, such as INFINITY.
     pub t_max: S,
@@ -437,7 +445,7 @@ pub struct patchray_ray<S> {
     pub origin: [S; 3],
     /// What one unit of t adds.
     pub direction: [S; 3],
-    /// The least t that counts, such as 0.
+    /// The least t that counts, such as 0; -INFINITY if all that lies behind the origin counts too.
     pub t_min: S,
     /// The largest t that counts, such as INFINITY.
     pub t_max: S,
@@ -455,8 +463,8 @@ pub struct patchray_hit<S> {
     pub v: S,
     /// The surface's number, in the order of the nets; PATCHRAY_NO_SURFACE if there is no hit.
     pub surface: u32,
-    /// 1 if the ray is tangent there to working precision: t, u, v are then known to half the digits. Else 0.
-    pub grazing: u32,
+    /// PATCHRAY_CROSSING, PATCHRAY_GRAZING or PATCHRAY_CONTACT; without a hit PATCHRAY_CROSSING.
+    pub incidence: u32,
 }
 
 /// Bounds on the work of one call. Functions take NULL for the defaults; one that sets some begins with
@@ -587,5 +595,11 @@ pub(super) const fn checked_layouts<S: Scalar>() {
 
 // A macro in the header cannot name what it stands for.
 const _: () = assert!(PATCHRAY_LAYOUT == crate::LAYOUT);
+
+const _: () = {
+    assert!(PATCHRAY_CROSSING == Incidence::Crossing as u32);
+    assert!(PATCHRAY_GRAZING == Incidence::Grazing as u32);
+    assert!(PATCHRAY_CONTACT == Incidence::Contact as u32);
+};
 
 const _: () = (checked_layouts::<f32>(), checked_layouts::<f64>()).0;

@@ -5,13 +5,14 @@ extern crate std;
 use super::*;
 use crate::bernstein::Basis;
 use crate::frame::{Aabb, Frame};
+use crate::parameter::Number;
 use crate::point::{Plain, Weighted};
-use crate::ray::Interval;
-use crate::surface::Net;
+use crate::ray::{Incidence, Interval};
+use crate::surface::{Net, Shape};
 use heapless::Vec as Fixed;
 use std::vec::Vec;
 
-type Found<S> = Result<(Vec<Root<S>>, Work), Limit>;
+type Found<A> = Result<(Vec<Root<A>>, Work), Limit>;
 
 /// All roots of a ray on a surface within [−1/2, 1/2]³ and what they cost, in an order.
 fn all<P: Point>(
@@ -19,14 +20,14 @@ fn all<P: Point>(
     points: &[P],
     ray: [[P::Scalar; 3]; 2],
     limits: &Limits<P::Scalar>,
-    order: Order<P::Scalar>,
-) -> Found<P::Scalar> {
+    order: Order<P::Parameter>,
+) -> Found<P::Parameter> {
     let half = P::Scalar::HALF;
     let frame = Frame::new(Aabb { low: [-half; 3], high: [half; 3] });
     let ray = frame.ray(ray[0], ray[1]).unwrap();
     let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
     let net = Net::checked(n, m, points).unwrap();
-    let surface = Surface { number: 0, net, bend: net.bend() };
+    let surface = Surface { number: 0, net, shape: Shape::of(&net) };
     let (mut whole, mut part) = (Fixed::<_, 256>::new(), Fixed::<_, 256>::new());
     let (mut pending, mut seen, mut basis) = (Fixed::<_, 64>::new(), Fixed::<_, 18>::new(), Basis::<_, 16>::new());
     let mut room =
@@ -35,12 +36,18 @@ fn all<P: Point>(
     let mut clipper = Clipper { surface: &surface, planes: &planes, limits, room: &mut room };
     let mut search = clipper.roots(order)?;
     while let Some(root) = search.next(&mut work)? {
+        // Not to be told from one that was found before, but nearer: it stands for that one.
+        if let Some(depth) = search.replaced() {
+            let found = roots.len();
+            roots.retain(|old: &Root<_>| old.depth != depth);
+            assert_eq!(roots.len() + 1, found);
+        }
         roots.push(root);
     }
     Ok((roots, work))
 }
 
-fn roots(degrees: [usize; 2], points: &[Plain<f64>], ray: [[f64; 3]; 2]) -> (Vec<Root<f64>>, Work) {
+fn roots(degrees: [usize; 2], points: &[Plain<f64>], ray: [[f64; 3]; 2]) -> (Vec<Root<Number<f64>>>, Work) {
     all(degrees, points, ray, &Limits::default(), Order::Any).unwrap()
 }
 
@@ -62,13 +69,16 @@ fn roots_of_a_trough_are_where_they_are() {
         // Straight down: one root; along the trough's width: two.
         let (down, _) = roots([2, 1], &trough(), [[x, 0.1, 0.4], [0.0, 0.0, -1.0]]);
         assert_eq!(down.len(), 1);
-        assert!((down[0].u - (x + 0.25) * 2.0).abs() < 1e-12 && (down[0].v - 0.7).abs() < 1e-12, "{down:?}");
+        assert!(
+            (down[0].u.number() - (x + 0.25) * 2.0).abs() < 1e-12 && (down[0].v.number() - 0.7).abs() < 1e-12,
+            "{down:?}"
+        );
     }
     for height in [0.0625, 0.01, 1e-4, 1e-8] {
         let (across, work) = roots([2, 1], &trough(), [[-0.4, 0.1, height], [1.0, 0.0, 0.0]]);
         assert_eq!(across.len(), 2, "{height} {work:?}");
         for root in &across {
-            let x = root.u * 0.5 - 0.25;
+            let x = root.u.number() * 0.5 - 0.25;
             // Twice the tolerance over the slope; where that vanishes, the root of it.
             assert!((x * x - height).abs() < 1e-12, "{height} {root:?}");
         }
@@ -99,7 +109,7 @@ fn a_ray_that_passes_by_is_no_hit_however_near() {
         assert_eq!(roots([2, 1], &trough(), [[0.25 + gap, 0.1, 0.4], [0.0, 0.0, -1.0]]).0.len(), 1, "{gap}");
         let (touched, _) = roots([2, 1], &trough(), [[-0.4, 0.1, gap], [1.0, 0.0, 0.0]]);
         assert_eq!(touched.len(), 1, "{gap} {touched:?}");
-        assert!(touched[0].grazing);
+        assert_eq!(touched[0].incidence, Incidence::Grazing);
     }
 }
 
@@ -108,7 +118,7 @@ fn a_ray_that_passes_by_is_no_hit_however_near() {
 fn tangency_takes_bounded_work() {
     for gap in [1e-4, 1e-8, 1e-12, 1e-14, 0.0, -1e-14, -1e-12, -1e-8, -1e-4] {
         let (_, work) = roots([2, 1], &trough(), [[-0.4, 0.1, gap], [1.0, 0.0, 0.0]]);
-        assert!(work.clip_steps < 120 && work.bisections < 40, "{gap}: {work:?}");
+        assert!(work.clip_steps < 150 && work.bisections < 40, "{gap}: {work:?}");
     }
 }
 
@@ -117,13 +127,15 @@ fn tangency_takes_bounded_work() {
 fn a_root_on_the_border_of_a_bisection_counts_once() {
     // A wave with three roots along z = 0, the middle one at u = 1/2, where the first bisection is.
     let wave = graph([3, 1], |i, _| [-0.05, 0.25, -0.25, 0.05][i]);
-    for order in [Order::Any, Order::around(Some([0.5, 0.5])), Order::around(Some([0.1, 0.5]))] {
+    for order in
+        [Order::Any, Order::around(Some([0.5, 0.5].map(Number::new))), Order::around(Some([0.1, 0.5].map(Number::new)))]
+    {
         let ray = [[-0.4, 0.1, 0.0], [1.0, 0.0, 0.0]];
         let (mut found, work) = all([3, 1], &wave, ray, &Limits::default(), order).unwrap();
-        found.sort_by(|a, b| a.u.total_cmp(&b.u));
+        found.sort_by(|a, b| a.u.number().total_cmp(&b.u.number()));
         assert!(work.bisections > 0);
         assert_eq!(found.len(), 3, "{found:?}");
-        assert!((found[1].u - 0.5).abs() < 1e-12, "{found:?}");
+        assert!((found[1].u.number() - 0.5).abs() < 1e-12, "{found:?}");
     }
 }
 
@@ -138,7 +150,10 @@ fn tolerances_are_distances_not_parameters() {
         let x = 0.4 * u.powi(7);
         let (found, work) = roots([7, 1], &squeezed, [[x, 0.1, 0.4], [0.0, 0.0, -1.0]]);
         assert_eq!(found.len(), 1, "{u} {work:?}");
-        assert!((0.4 * found[0].u.powi(7) - x).abs() < 1e-12 && (found[0].v - 0.4).abs() < 1e-11, "{u} {found:?}");
+        assert!(
+            (0.4 * found[0].u.number().powi(7) - x).abs() < 1e-12 && (found[0].v.number() - 0.4).abs() < 1e-11,
+            "{u} {found:?}"
+        );
     }
 }
 
@@ -148,9 +163,9 @@ fn a_collapsed_edge_is_met_once() {
     let cone: Vec<_> = [[0.0; 3], [0.0; 3], [-0.2, 0.3, -0.1], [0.2, 0.3, -0.1]].map(Plain).into_iter().collect();
     let (tip, work) = roots([1, 1], &cone, [[0.0, 0.0, 0.4], [0.0, 0.0, -1.0]]);
     assert_eq!(tip.len(), 1, "{tip:?}");
-    assert!(tip[0].u < 1e-11 && work.clip_steps < 100, "{tip:?} {work:?}");
+    assert!(tip[0].u.number() < 1e-11 && work.clip_steps < 100, "{tip:?} {work:?}");
     let (near, _) = roots([1, 1], &cone, [[0.0, 1e-9, 0.4], [0.0, 0.0, -1.0]]);
-    assert!(near.len() == 1 && (near[0].v - 0.5).abs() < 1e-3, "{near:?}");
+    assert!(near.len() == 1 && (near[0].v.number() - 0.5).abs() < 1e-3, "{near:?}");
     assert_eq!(roots([1, 1], &cone, [[0.0, -1e-9, 0.4], [0.0, 0.0, -1.0]]).0, []);
 }
 
@@ -161,7 +176,7 @@ fn a_ray_in_the_surface_is_a_hit_or_out_of_budget() {
     let (found, work) = roots([1, 1], &sheet, [[-0.4, 0.1, 0.0], [1.0, 0.0, 0.0]]);
     assert_eq!(found.len(), 1, "{work:?}");
     // Where the ray enters the sheet.
-    assert!(found[0].u == 0.0 && (found[0].v - 0.7).abs() < 1e-12, "{found:?}");
+    assert!(found[0].u.number() == 0.0 && (found[0].v.number() - 0.7).abs() < 1e-12, "{found:?}");
     let skew = all([1, 1], &sheet, [[-0.4, -0.3, 0.0], [1.0, 0.7, 0.0]], &Limits::default(), Order::Any);
     match skew {
         Ok((found, _)) => assert!(!found.is_empty()),
@@ -186,7 +201,7 @@ fn a_rational_quarter_of_a_cylinder_is_round() {
             let points: Vec<_> = points.iter().map(|p| p.rescaled(0, exponent)).collect();
             let (found, _) = all([2, 1], &points, ray, &Limits::default(), Order::Any).unwrap();
             assert_eq!(found.len(), 1);
-            let (u, w) = (found[0].u, [1.0, h, 1.0]);
+            let (u, w) = (found[0].u.number(), [1.0, h, 1.0]);
             let b = [(1.0 - u) * (1.0 - u), 2.0 * u * (1.0 - u), u * u];
             let at = |k: usize| {
                 let sum: f64 = (0..3).map(|i| b[i] * w[i] * circle[i].0[k]).sum();
@@ -213,7 +228,7 @@ fn the_threshold_changes_the_work_and_not_the_roots() {
     for (found, _) in &seen {
         assert_eq!(found.len(), seen[0].0.len());
         for (a, b) in found.iter().zip(&seen[0].0) {
-            assert!((a.u - b.u).abs() < 1e-11 && (a.v - b.v).abs() < 1e-11);
+            assert!((a.u.number() - b.u.number()).abs() < 1e-11 && (a.v.number() - b.v.number()).abs() < 1e-11);
         }
     }
     let mut bisections: Vec<_> = seen.iter().map(|(_, bisections)| *bisections).collect();

@@ -1,6 +1,6 @@
 //! The way of a ray into the scene: its planes, from where it enters the scene's box.
 
-use super::{Frame, NEAR};
+use super::{Aabb, Frame, NEAR};
 use crate::planes::{DepthRange, Planes};
 use crate::ray::{Axis, Interval, Ray};
 use crate::scalar::{Scalar, Vector3};
@@ -31,17 +31,54 @@ impl<S: Scalar> Frame<S> {
         Some((planes, DepthRange { min: S::ZERO, max: (end - start) * self.scale }))
     }
 
+    /// The same for one surface whose coordinates are much smaller than the scene's: the origin is moved to where the ray passes
+    /// the middle of the surface's box, given in the frame, which loses no digits to the way there. `reach` bounds the
+    /// coordinates of the surface and of rays near it.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn enter_near(
+        &self,
+        ray: &Ray<S>,
+        interval: &Interval<S>,
+        bounds: &Aabb<S>,
+        reach: S,
+    ) -> Option<(Planes<S>, DepthRange<S>)> {
+        let axis = ray.axis;
+        let speed = axis.of(&ray.direction).abs();
+        let direction = ray.direction.map(|c| c / speed);
+        let inverse = ray.direction.map(|c| speed / c);
+        let middle = (axis.of(&bounds.low) + axis.of(&bounds.high)) * S::HALF * self.unscale;
+        let (origin, t) = self.moved(ray, axis, middle);
+        let origin = origin.map(|c| c * self.scale);
+        let (near, far) = bounds.depths(&origin, &inverse)?;
+        let depth = |bound: S| (bound - t) * speed * self.scale;
+        let range = DepthRange { min: near.greater(depth(interval.min)), max: far.lesser(depth(interval.max)) };
+        if !(range.min <= range.max) {
+            return None;
+        }
+        let planes = Planes::new(axis, origin, direction, inverse, t, self.unscale / speed, *interval);
+        Some((planes.with_reach(reach), range))
+    }
+
     /// Moves a far origin along the ray to about the scene; `None` if the ray passes it by.
     #[cold]
     #[inline(never)]
     fn approach(&self, ray: &Ray<S>, axis: Axis) -> Option<([S; 3], S)> {
+        let middle = (axis.of(&self.bounds.low) + axis.of(&self.bounds.high)) * S::HALF;
+        let (origin, t) = self.moved(ray, axis, middle);
+        // Where the ray crosses the box's middle plane it is at most a box away sideways, if it meets the box at all.
+        let near = S::Vec3::from_array(origin).largest() <= self.reach * S::from_u32(NEAR);
+        if near { Some((origin, t)) } else { None }
+    }
+
+    /// The ray's point at which the nets' coordinate along `axis`, the ray's steepest, is `middle`, and its t: rounded about once.
+    fn moved(&self, ray: &Ray<S>, axis: Axis, middle: S) -> ([S; 3], S) {
         let (mut origin, mut t) = (self.relative(ray.origin), S::ZERO);
         // What rounding took of them (Knuth's difference), to be given back where it is not small any more.
         let mut lost: [S; 3] = core::array::from_fn(|k| {
             let part = origin[k] - ray.origin[k];
             (ray.origin[k] - (origin[k] - part)) - (self.origin[k] + part)
         });
-        let middle = (axis.of(&self.bounds.low) + axis.of(&self.bounds.high)) * S::HALF;
         // Twice: the first step is exact sideways but off along the ray by the rounding of a far t; the second is not.
         for _ in 0..2 {
             let step = (middle - axis.of(&origin)) / axis.of(&ray.direction);
@@ -49,9 +86,7 @@ impl<S: Scalar> Frame<S> {
             lost = [S::ZERO; 3];
             t += step;
         }
-        // Where the ray crosses the box's middle plane it is at most a box away sideways, if it meets the box at all.
-        let near = S::Vec3::from_array(origin).largest() <= self.reach * S::from_u32(NEAR);
-        if near { Some((origin, t)) } else { None }
+        (origin, t)
     }
 }
 
@@ -80,8 +115,8 @@ fn exact_product_sum<S: Scalar>(a: S, b: S, c: S) -> S {
 
 #[cfg(test)]
 mod tests {
+    use super::super::exact_origin;
     use super::super::tests::unit_frame;
-    use super::super::{Aabb, exact_origin};
     use super::*;
 
     #[test]
@@ -128,6 +163,52 @@ mod tests {
         for [low, high] in [[0.0, 1.0], [1.0, 2.5], [-1.0, 1.0], [1e-45, 1e-45], [f32::INFINITY, 0.0]] {
             assert_eq!(exact_origin(&Aabb { low: [low; 3], high: [high; 3] }), [0.0; 3]);
         }
+    }
+
+    /// No bound of t may come to a NaN on the way to depths, which would hide what lies ahead.
+    #[test]
+    fn infinite_bounds_are_as_bounds_beyond_the_scene() {
+        fn check<S: Scalar>(far: f64) {
+            let frame = unit_frame::<S>();
+            let [none, all] = [S::ZERO, S::INFINITY];
+            for length in [1e-20, 1.0, 1e15] {
+                for distance in [0.0, 1.0, 2.0 * f64::from(NEAR), far] {
+                    for (axis, side) in [(0, 1.0), (1, -1.0), (2, 1.0), (0, -1.0)] {
+                        // Toward the scene, or away from it, or in it; some components of the direction are 0.
+                        let mut direction = [0.0; 3];
+                        direction[axis] = side * length;
+                        let mut origin = [0.125, -0.25, 0.0625];
+                        origin[axis] -= distance;
+                        let ray = frame.ray(origin.map(S::from_f64), direction.map(S::from_f64)).unwrap();
+                        let entered = |min: S, max: S| {
+                            let entered = frame.enter(&ray, &Interval::new(min, max).unwrap());
+                            entered.map(|(planes, range)| (planes.origin(), planes.t(S::ZERO), range))
+                        };
+                        let beyond = S::from_f64(1e3 * (1.0 + distance) / length);
+                        let whole = entered(-all, all);
+                        assert!(whole.is_some() && whole == entered(-beyond, beyond));
+                        let (origin, t, range) = whole.unwrap();
+                        assert!(t.is_finite() && range.max.is_finite() && range.min == none && range.max > none);
+                        assert!(origin.iter().all(|c| c.abs() < S::ONE));
+                        // The planes bound t by the same interval.
+                        let (planes, _) = frame.enter(&ray, &Interval::new(-all, all).unwrap()).unwrap();
+                        for depth in [none, range.max] {
+                            assert!(!planes.is_before_interval(depth));
+                            assert_eq!(planes.t_in_interval(depth), Some(planes.t(depth)));
+                        }
+                        let middle = planes.t(range.max * S::HALF);
+                        assert!(entered(-all, middle).is_some() && entered(middle, all).is_some());
+                        assert_eq!(entered(-all, middle), entered(-beyond, middle));
+                        assert_eq!(entered(middle, all), entered(middle, beyond));
+                        assert!(entered(-all, -beyond).is_none() && entered(beyond, all).is_none());
+                        // No t is infinite.
+                        assert!(entered(all, all).is_none() && entered(-all, -all).is_none());
+                    }
+                }
+            }
+        }
+        check::<f64>(1e9);
+        check::<f32>(1e5);
     }
 
     #[test]

@@ -50,14 +50,14 @@ fn with_views(mut with: impl FnMut(&View<'_, Plain<f64>>, &[Patch<f64>])) {
     let mut scratch = SubdivideScratch::<_, 16>::new();
     let nothing = PatchMemory { patches: &mut [], first: &mut [] };
     let Err(SubdivideError::Memory(needs)) =
-        subdivide(scene.nets(), frame, &options, &mut scratch.view(), nothing, None)
+        subdivide(scene.surfaces(), frame, &options, &mut scratch.view(), nothing, None)
     else {
         panic!()
     };
     let (mut patches, mut first) = (vec![Patch::EMPTY; needs.patches.needed], vec![0; needs.first.needed]);
     let memory = PatchMemory { patches: &mut patches, first: &mut first };
     let (patches, _): (Patches<'_, f64>, _) =
-        subdivide(scene.nets(), frame, &options, &mut scratch.view(), memory, None).unwrap();
+        subdivide(scene.surfaces(), frame, &options, &mut scratch.view(), memory, None).unwrap();
     let outside =
         Camera { eye: [4.0, 3.0, 2.0], forward: [-4.0, -3.0, -2.0], right: [-1.5, 2.0, 0.0], up: [-0.4, -0.2, 1.9] };
     let inside =

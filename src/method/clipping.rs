@@ -59,7 +59,7 @@ pub fn closest_in_view<P: Point>(
         if along.has_patches() {
             region = None;
             along.ahead(planes, &range, limits, work, |patch, _, _| {
-                let domain = Region { sides: patch.domain().bounds(), ..Region::WHOLE };
+                let domain = Region::between(patch.domain().bounds());
                 region = Some(region.map_or(domain, |region| region.joined(&domain)));
                 Ok(P::Scalar::INFINITY)
             })?;
@@ -95,7 +95,10 @@ pub fn all_hits<P: Point>(
         let mut roots = clipper.roots(Order::Any)?;
         // Ends with the roots.
         while let Some(root) = roots.next(work)? {
-            all.add(root, surface, planes, limits.tolerance, &mut work.intersection_points);
+            if let Some(depth) = roots.replaced() {
+                all.forget(surface.number, planes.t(depth));
+            }
+            all.add(root, surface, planes, limits, &mut work.intersection_points);
         }
         Ok(())
     })

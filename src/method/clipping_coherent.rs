@@ -12,11 +12,12 @@
 //! - ours: a root is not verified when no region waits any more;
 //! - ours: if no region that waits holds the previous (u, v), the nearest is first.
 
-use super::{Remembered, keep_closest};
+use super::{Remembered, keep_closest, led};
 use crate::clipper::{ClipRoom, Clipper};
 use crate::grid::Grids;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::Line;
+use crate::parameter::Parameter;
 use crate::patch::Patches;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
@@ -46,14 +47,15 @@ pub fn closest<P: Point>(
     room: &mut ClipRoom<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    let stamp = scan_line.wrapping_add(1);
-    scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
-        let number = surface.number as usize;
-        let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
-        let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
-        let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
-        let clipper = Clipper { surface, planes, limits, room };
-        search(clipper, &InGrid { grid, patches }, range.min, slot, stamp, work)
+    led(scan_line.wrapping_add(1), true, work, |stamp, recalled, work| {
+        scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
+            let number = surface.number as usize;
+            let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
+            let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
+            let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
+            let clipper = Clipper { surface, planes, limits, room };
+            search(clipper, &InGrid { grid, patches }, range.min, slot, stamp, recalled, work)
+        })
     })
 }
 
@@ -73,10 +75,11 @@ pub fn closest_in_view<P: Point>(
     room: &mut ClipRoom<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    let stamp = scan_line.wrapping_add(1);
-    line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
-        let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
-        search(Clipper { surface, planes, limits, room }, along, range.min, slot, stamp, work)
+    led(scan_line.wrapping_add(1), false, work, |stamp, recalled, work| {
+        line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
+            let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
+            search(Clipper { surface, planes, limits, room }, along, range.min, slot, stamp, recalled, work)
+        })
     })
 }
 
@@ -88,18 +91,20 @@ fn search<P: Point>(
     nearest: P::Scalar,
     slot: &mut Remembered<P::Scalar>,
     stamp: u32,
+    recalled: &mut bool,
     work: &mut Work,
-) -> Result<Option<Root<P::Scalar>>, Limit> {
-    let (planes, limits) = (clipper.planes, clipper.limits);
+) -> Result<Option<Root<P::Parameter>>, Limit> {
     let previous = slot.recall(stamp);
+    *recalled |= previous.is_some();
+    let (planes, limits) = (clipper.planes, clipper.limits);
     let mut best = None;
     // The closest root at all but those before the interval: what the next ray begins at.
-    let mut closest: Option<Root<P::Scalar>> = None;
+    let mut closest: Option<Root<P::Parameter>> = None;
     let mut first = previous.is_some();
     if let Some(previous) = previous {
         P::Scalar::tell(|| Event::Remembered(previous.map(P::Scalar::to_f64)));
     }
-    let mut roots = clipper.roots(Order::around(previous))?;
+    let mut roots = clipper.roots(Order::around(previous.map(|at| at.map(P::Parameter::new))))?;
     // Ends with the roots.
     while let Some(root) = roots.next(work)? {
         if planes.is_before_interval(root.depth) {

@@ -22,10 +22,12 @@ use crate::clipper::{ClipRoom, Clipper};
 use crate::contract::Single;
 use crate::limits::{Acceptance, GaveUp, Limit, Limits, Work};
 use crate::line::Line;
+use crate::local::Exactness;
+use crate::parameter::Parameter;
 use crate::patch::Patch;
 use crate::planes::DepthRange;
 use crate::point::Point;
-use crate::ray::Hit;
+use crate::ray::{Hit, Incidence};
 use crate::region::Region;
 use crate::scalar::Scalar;
 use crate::span::InLine;
@@ -99,23 +101,30 @@ fn closest_so_far<P: Point>(
     ray: &Facing<P::Scalar>,
     limits: &Limits<P::Scalar>,
     room: &mut ClipRoom<'_, P>,
-    best: &mut Option<Best<P::Scalar>>,
+    best: &mut Option<Best<P::Parameter>>,
     work: &mut Work,
 ) -> Result<(), Limit> {
     let start = memory.slots.get(last as usize).and_then(|slot| slot.predict(ray.place, stamp));
+    let again;
     let mut search =
         Search { view, ray, limits, nearby, room, projected: None, decided: None, claim: None, contested: false };
-    let mut resumed = false;
+    let (mut resumed, mut led) = (false, false);
     let start = start.filter(|_| search.nearby.holds_surface(last));
     if let (Some(start), Some(slot)) = (start, memory.slots.get_mut(last as usize)) {
         P::Scalar::tell(|| Event::Remembered(start.map(P::Scalar::to_f64)));
-        resumed = search.resume(last, start, slot, stamp, best, work)?;
+        // What the memory led into must not cost the ray its answer: see `led`.
+        led = true;
+        resumed = search.resume(last, start, slot, stamp, best, work).unwrap_or(false);
         work.start_failed += u32::from(!resumed);
         if !resumed {
             P::Scalar::tell(|| Event::StartFailed);
         }
     }
     if !resumed {
+        if led {
+            again = limits.beyond(work, work.spans_visited);
+            (search.limits, search.claim, search.decided) = (&again, None, None);
+        }
         *best = None;
         search.in_full(best, work)?;
     }
@@ -124,9 +133,13 @@ fn closest_so_far<P: Point>(
         // A root that a patch led to.
         if !best.kept {
             let surface = view.surface(best.surface as usize).ok_or(Limit::Slot)?;
-            let local = search.clipper(&surface)?.local([best.root.u, best.root.v], work)?;
             let slot = memory.slots.get_mut(best.surface as usize).ok_or(Limit::Memory)?;
-            slot.keep(&best.root, &local, ray, stamp);
+            match search.clipper(&surface)?.local([best.root.u, best.root.v], work) {
+                Ok(local) => slot.keep(&best.root, &local, ray, stamp),
+                // Nothing is left for the next ray, and this one is answered.
+                Err(Limit::NewtonSteps) => {}
+                Err(limit) => return Err(limit),
+            }
         }
     }
     Ok(())
@@ -157,12 +170,13 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         start: [P::Scalar; 2],
         slot: &mut Followed<P::Scalar>,
         stamp: u32,
-        best: &mut Option<Best<P::Scalar>>,
+        best: &mut Option<Best<P::Parameter>>,
         work: &mut Work,
     ) -> Result<bool, Limit> {
         let (ray, limits, nearby) = (self.ray, self.limits, self.nearby);
         let ([u, v], half) = (start, P::Scalar::from_f64(WINDOW));
-        let Some(window) = Region::WHOLE.meet([[u - half, u + half], [v - half, v + half]]) else {
+        let Some(window) = Region::WHOLE.meet(Region::between([[u - half, u + half], [v - half, v + half]]).sides)
+        else {
             return Ok(false);
         };
         let Some(of_window) = self.view.surface(surface as usize) else {
@@ -180,16 +194,16 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         slot.keep(&point, &local, ray, stamp);
         *best = Some(Best { root: point, surface, kept: true });
         P::Scalar::tell(|| Event::Testing);
-        let alone = Alone::new(&point, &local, of_window.bend);
+        let alone = Alone::new(&point, &local, of_window.shape.bend, ray.planes.reach());
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
-        let claim = Claim::of(&point, surface, limits);
+        let claim = Claim::of(&point, surface, &Exactness::of(&of_window, &ray.planes, limits));
         self.claim = Some(claim);
         let mut verified = true;
         let up_to = claim.up_to(best.as_ref());
         nearby.visit(&ray.planes, up_to, limits, work, exempt, |number, patch, crossing, work| {
             let farthest = claim.up_to(best.as_ref());
-            let owner = number == surface && patch.domain().holds(point.u, point.v);
+            let owner = number == surface && patch.domain().holds(point.u.number(), point.v.number());
             let known = if owner {
                 met_at_most_once(patch, crossing, limits)
             } else {
@@ -218,7 +232,7 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
     }
 
     /// The closest root by clipping what the ray meets, front to back, that ends where nothing farther on can be closer.
-    fn in_full(&mut self, best: &mut Option<Best<P::Scalar>>, work: &mut Work) -> Result<(), Limit> {
+    fn in_full(&mut self, best: &mut Option<Best<P::Parameter>>, work: &mut Work) -> Result<(), Limit> {
         let (ray, limits, nearby) = (self.ray, self.limits, self.nearby);
         work.full_searches += 1;
         P::Scalar::tell(|| Event::FullSearch);
@@ -246,21 +260,21 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         &mut self,
         number: u32,
         patch: &Patch<P::Scalar>,
-        best: &mut Option<Best<P::Scalar>>,
+        best: &mut Option<Best<P::Parameter>>,
         work: &mut Work,
     ) -> Result<(), Limit> {
         if self.decided == Some(number) {
             return Ok(());
         }
         let (before, bisections) = (*best, work.bisections);
-        let grazing = self.clip_region(number, patch.domain().bounds(), best, work)?;
+        let grazing = self.clip_region(number, Region::between(patch.domain().bounds()), best, work)?;
         let plain = !grazing && work.bisections == bisections;
         if let Some(decided) = self.decided {
             // Found in another region than the root before, it may be that of a surface that coincides: the first is named.
             if let (Some(old), Some(new)) = (before, &*best)
                 && old.surface == decided
                 && old.surface < new.surface
-                && Claim::of(&old.root, decided, self.limits).is_contested_by(&new.root, new.surface)
+                && Claim::of(&old.root, decided, &self.exact_on(decided)?).is_contested_by(&new.root, new.surface)
             {
                 *best = before;
             }
@@ -270,15 +284,15 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
             return Ok(());
         }
         let (ray, limits, nearby) = (self.ray, self.limits, self.nearby);
-        let mut region = Region { sides: patch.domain().bounds(), ..Region::WHOLE };
+        let mut region = Region::between(patch.domain().bounds());
         let others = |surface: u32, _: &Patch<P::Scalar>| surface != number;
         nearby.visit(&ray.planes, ray.range.max, limits, work, others, |_, patch, _, _| {
-            region = region.joined(&Region { sides: patch.domain().bounds(), ..Region::WHOLE });
+            region = region.joined(&Region::between(patch.domain().bounds()));
             Ok(ray.range.max)
         })?;
         self.decided = Some(number);
         *best = before;
-        self.clip_region(number, region.sides, best, work)?;
+        self.clip_region(number, region, best, work)?;
         Ok(())
     }
 
@@ -286,20 +300,26 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
     fn clip_region(
         &mut self,
         number: u32,
-        sides: [[P::Scalar; 2]; 2],
-        best: &mut Option<Best<P::Scalar>>,
+        region: Region<P::Parameter>,
+        best: &mut Option<Best<P::Parameter>>,
         work: &mut Work,
     ) -> Result<bool, Limit> {
         let surface = self.view.surface(number as usize).ok_or(Limit::Slot)?;
         let (planes, claim) = (&self.ray.planes, self.claim);
         let (mut grazing, mut contested) = (false, false);
-        self.clipper(&surface)?.roots_within(Region { sides, ..Region::WHOLE }, work, |root, work| {
-            grazing |= root.grazing;
+        self.clipper(&surface)?.roots_within(region, work, |root, work| {
+            grazing |= root.incidence != Incidence::Crossing;
             contested |= claim.is_some_and(|claim| claim.is_contested_by(&root, number));
             Best::keep(best, Best { root, surface: number, kept: false }, planes, work);
         })?;
         self.contested |= contested;
         Ok(grazing)
+    }
+
+    /// How exactly the ray can meet a surface.
+    fn exact_on(&self, number: u32) -> Result<Exactness<P::Scalar>, Limit> {
+        let surface = self.view.surface(number as usize).ok_or(Limit::Slot)?;
+        Ok(Exactness::of(&surface, &self.ray.planes, self.limits))
     }
 
     /// A clipper of a surface, its net projected.

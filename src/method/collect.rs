@@ -1,9 +1,11 @@
 //! All hits of a ray, in a list that the caller lends.
 
 use crate::limits::{GaveUp, Limit, Limits, Work};
+use crate::local::Exactness;
+use crate::parameter::Parameter;
 use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
-use crate::ray::{Hit, Interval, Ray};
+use crate::ray::{Hit, Incidence, Interval, Ray};
 use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
@@ -18,28 +20,44 @@ pub(super) struct Collected<'h, S> {
 }
 
 impl<S: Scalar> Collected<'_, S> {
-    /// Adds a root of a surface, if it lies in the ray's interval and was not found before; counts it in `points`.
+    /// Takes out a hit for which another one stands.
+    pub(super) fn forget(&mut self, surface: u32, t: S) {
+        self.hits.retain(|hit| !(hit.surface == surface && hit.t == t));
+    }
+
+    /// Adds a root of a surface, if it lies in the ray's interval and was not found before; counts it in `points`. Of a root that
+    /// cannot be told from one that was found the nearer stays.
     ///
     /// A full list keeps the closest ones.
     pub(super) fn add<P: Point<Scalar = S>>(
         &mut self,
-        root: Root<S>,
+        root: Root<P::Parameter>,
         surface: &Surface<'_, P>,
         planes: &Planes<S>,
-        tolerance: S,
+        limits: &Limits<S>,
         points: &mut u32,
     ) {
         let Some(t) = planes.t_in_interval(root.depth) else {
             return;
         };
+        let exact = Exactness::of(surface, planes, limits);
+        // What is allowed across the ray is more along it, most where the ray all but grazes.
+        let near = planes.time(exact.allowed() / exact.graze());
         let known = |hit: &Hit<S>| {
-            hit.surface == surface.number && surface.same_root([hit.u, hit.v], [root.u, root.v], tolerance)
+            let together = (hit.t - t).abs() <= near || (crosses_not(hit.incidence) && crosses_not(root.incidence));
+            let at = [hit.u, hit.v].map(P::Parameter::new);
+            hit.surface == surface.number && together && surface.same_root(at, [root.u, root.v], exact.tolerance)
         };
-        if self.hits.iter().any(known) {
-            return;
-        }
-        *points += 1;
         let hit = root.hit(surface.number, t);
+        if let Some(old) = self.hits.iter().find(|hit| known(hit)) {
+            if old.t <= t {
+                return;
+            }
+            let old = *old;
+            self.hits.retain(|hit| *hit != old);
+        } else {
+            *points += 1;
+        }
         let mut next = hit;
         // Ends with the list: from the hit's place on, each one moves on by one.
         for slot in self.hits.iter_mut() {
@@ -49,6 +67,11 @@ impl<S: Scalar> Collected<'_, S> {
         }
         self.overflowed |= self.hits.push(next).is_err();
     }
+}
+
+/// Whether the ray is tangent, or goes along the surface: two such roots may be one that rounding has parted.
+fn crosses_not(incidence: Incidence) -> bool {
+    incidence != Incidence::Crossing
 }
 
 /// By t; of equal ones by surface and parameters, so that the order does not depend on that of the search.
@@ -99,7 +122,7 @@ pub(super) fn any_hit<P: Point>(
         &Planes<P::Scalar>,
         DepthRange<P::Scalar>,
         &mut Work,
-    ) -> Result<Option<Root<P::Scalar>>, Limit>,
+    ) -> Result<Option<Root<P::Parameter>>, Limit>,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     let mut any = None;
     let ended = scene.visit(ray, interval, limits, work, |surface, planes, range, work| {

@@ -8,8 +8,9 @@
 //! Source for the second derivatives: M. J. D. Powell's symmetric form of Broyden's update, "A new algorithm for unconstrained
 //! optimization", 1970: of all symmetric matrices that explain the last change it is the one nearest to the old.
 
-use crate::limits::{Limits, Work};
-use crate::local::{Local, noise};
+use crate::limits::Work;
+use crate::local::{Exactness, Local};
+use crate::parameter::Parameter;
 use crate::planes::Planes;
 use crate::root::Root;
 use crate::scalar::Scalar;
@@ -76,9 +77,15 @@ impl<S: Scalar> Followed<S> {
 
     /// Keeps a root that a ray found, near which `local` holds.
     #[inline(always)]
-    pub(super) fn keep(&mut self, root: &Root<S>, local: &Local<S>, ray: &Facing<S>, stamp: u32) {
-        let rates = local.rates(root.depth + ray.ahead, ray.turning);
-        self.go_on([root.u, root.v], rates, ray.place, stamp);
+    pub(super) fn keep<A: Parameter<Scalar = S>>(
+        &mut self,
+        root: &Root<A>,
+        local: &Local<A>,
+        ray: &Facing<S>,
+        stamp: u32,
+    ) {
+        let rates = local.rates(ray.planes.reach(), root.depth + ray.ahead, ray.turning);
+        self.go_on(root.at(), rates, ray.place, stamp);
     }
 
     /// Goes on to the point (u, v) of the ray at (x, y); `rates` are its derivatives in x and in y, if they are known.
@@ -112,14 +119,14 @@ impl<S: Scalar> Followed<S> {
 
 /// The closest root so far.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Best<S> {
-    pub(super) root: Root<S>,
+pub(super) struct Best<A: Parameter> {
+    pub(super) root: Root<A>,
     pub(super) surface: u32,
     /// Whether it is kept for the next ray already.
     pub(super) kept: bool,
 }
 
-impl<S: Scalar> Best<S> {
+impl<S: Scalar, A: Parameter<Scalar = S>> Best<A> {
     /// Counts a root as an intersection point if it lies in the ray's interval, and keeps it if it is closer; of equal ones that
     /// of the lower surface, so that the answer does not depend on the order of search.
     #[inline(always)]
@@ -151,19 +158,19 @@ pub(super) struct Claim<S> {
 impl<S: Scalar> Claim<S> {
     /// Of a root that memory led to on a surface.
     #[inline(always)]
-    pub(super) fn of(root: &Root<S>, surface: u32, limits: &Limits<S>) -> Self {
-        Claim { surface, depth: root.depth, tie: (limits.tolerance + noise()) * S::from_u32(4) }
+    pub(super) fn of<A: Parameter<Scalar = S>>(root: &Root<A>, surface: u32, exact: &Exactness<S>) -> Self {
+        Claim { surface, depth: root.depth, tie: exact.allowed() * S::from_u32(4) }
     }
 
     /// How far to look for what may be closer than the best root so far, or contest this one.
     #[inline(always)]
-    pub(super) fn up_to(&self, best: Option<&Best<S>>) -> S {
+    pub(super) fn up_to<A: Parameter<Scalar = S>>(&self, best: Option<&Best<A>>) -> S {
         best.map_or(self.depth, |best| best.root.depth) + self.tie
     }
 
     /// Whether a root that was found on a surface contests it: another one's, at its depth.
     #[inline(always)]
-    pub(super) fn is_contested_by(&self, root: &Root<S>, surface: u32) -> bool {
+    pub(super) fn is_contested_by<A: Parameter<Scalar = S>>(&self, root: &Root<A>, surface: u32) -> bool {
         surface != self.surface && (root.depth - self.depth).abs() <= self.tie
     }
 }

@@ -17,6 +17,8 @@ pub use follow::{Followed, Following};
 use crate::bernstein::{Basis, BasisView};
 use crate::clipper::ClipRoom;
 use crate::fallback::{Fallback, NoFallback};
+use crate::limits::Work;
+use crate::parameter::Parameter;
 use crate::planes::Planes;
 use crate::point::Point;
 use crate::region::Region;
@@ -74,8 +76,8 @@ pub struct ScratchView<'s, P: Point, F = NoFallback> {
 pub struct ClipScratch<P: Point, const ORDER: usize, const POINTS: usize, const PENDING: usize> {
     whole: Vec<P::Flat, POINTS>,
     part: Vec<P::Flat, POINTS>,
-    pending: Vec<Region<P::Scalar>, PENDING>,
-    roots: Vec<Root<P::Scalar>, ROOTS>,
+    pending: Vec<Region<P::Parameter>, PENDING>,
+    roots: Vec<Root<P::Parameter>, ROOTS>,
     basis: Basis<P::Scalar, ORDER>,
 }
 
@@ -125,8 +127,8 @@ impl<S: Scalar> Remembered<S> {
 
     /// What a ray leaves: the point that it found; after a miss nothing.
     #[inline(always)]
-    fn of(found: Option<Root<S>>, stamp: u32) -> Self {
-        found.map_or(Self::EMPTY, |root| Remembered { u: root.u, v: root.v, stamp })
+    fn of<A: Parameter<Scalar = S>>(found: Option<Root<A>>, stamp: u32) -> Self {
+        found.map_or(Self::EMPTY, |root| Remembered { u: root.u.number(), v: root.v.number(), stamp })
     }
 
     /// (u, v) of the previous ray's point, if it was of this scan line.
@@ -136,9 +138,39 @@ impl<S: Scalar> Remembered<S> {
     }
 }
 
+/// A search that memory may lead, by a stamp to recall with; and where it runs out, once more without memory, by budgets of its
+/// own: what memory led into must not cost a ray its answer. `search` also says whether it recalled anything. `set` is whether it
+/// sets `work`, and does not add to it.
+#[inline(always)]
+fn led<T, E>(
+    mut stamp: u32,
+    set: bool,
+    work: &mut Work,
+    mut search: impl FnMut(u32, &mut bool, &mut Work) -> Result<T, E>,
+) -> Result<T, E> {
+    let mut spent = Work::default();
+    // Ends: a second search, whose stamp recalls nothing, is the last.
+    loop {
+        let mut recalled = false;
+        let answer = search(stamp, &mut recalled, work);
+        if set {
+            *work = spent.plus(work);
+        }
+        if !(recalled && answer.is_err()) {
+            return answer;
+        }
+        (stamp, spent) = (0, *work);
+    }
+}
+
 /// Counts a root as an intersection point if it lies in the ray's interval, and keeps it if it is closer.
 #[inline(always)]
-fn keep_closest<S: Scalar>(best: &mut Option<Root<S>>, found: Root<S>, planes: &Planes<S>, points: &mut u32) {
+fn keep_closest<A: Parameter>(
+    best: &mut Option<Root<A>>,
+    found: Root<A>,
+    planes: &Planes<A::Scalar>,
+    points: &mut u32,
+) {
     if planes.t_in_interval(found.depth).is_some() {
         *points += 1;
         if best.is_none_or(|old| found.depth < old.depth) {

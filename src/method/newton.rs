@@ -98,7 +98,7 @@ pub fn all_hits<P: Point, F: Fallback<P>>(
 ) -> Result<(), GaveUp<P::Scalar>> {
     collect::all_hits(scene, ray, interval, limits, hits, work, |surface, planes, range, all, work| {
         roots(surface, patches, tree, planes, range, limits, scratch, work, |root, work| {
-            all.add(root, surface, planes, limits.tolerance, &mut work.intersection_points);
+            all.add(root, surface, planes, limits, &mut work.intersection_points);
             true
         })
     })
@@ -137,7 +137,7 @@ fn roots<P: Point, F: Fallback<P>>(
     limits: &Limits<P::Scalar>,
     scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
-    mut found: impl FnMut(Root<P::Scalar>, &mut Work) -> bool,
+    mut found: impl FnMut(Root<P::Parameter>, &mut Work) -> bool,
 ) -> Result<(), Limit> {
     let number = surface.number as usize;
     let mut descent = tree.of_surface(patches, number).ok_or(Limit::Slot)?;

@@ -12,7 +12,7 @@
 //! - ours: a point that no listed patch holds cannot be judged, and the surface is searched in full.
 
 use super::starts::{First, roots_of_patch};
-use super::{Remembered, ScratchView, keep_closest};
+use super::{Remembered, ScratchView, keep_closest, led};
 use crate::fallback::Fallback;
 use crate::grid::Grids;
 use crate::limits::{GaveUp, Limit, Limits, Work};
@@ -47,15 +47,16 @@ pub fn closest<P: Point, F: Fallback<P>>(
     scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    let stamp = scan_line.wrapping_add(1);
-    scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
-        let number = surface.number as usize;
-        let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
-        let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
-        let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
-        let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
-        Search { solver, fallback: &mut scratch.fallback, along: &InGrid { grid, patches }, range }
-            .run(slot, stamp, work)
+    led(scan_line.wrapping_add(1), true, work, |stamp, recalled, work| {
+        scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
+            let number = surface.number as usize;
+            let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
+            let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
+            let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
+            let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
+            Search { solver, fallback: &mut scratch.fallback, along: &InGrid { grid, patches }, range }
+                .run(slot, stamp, recalled, work)
+        })
     })
 }
 
@@ -75,11 +76,12 @@ pub fn closest_in_view<P: Point, F: Fallback<P>>(
     scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    let stamp = scan_line.wrapping_add(1);
-    line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
-        let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
-        let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
-        Search { solver, fallback: &mut scratch.fallback, along, range }.run(slot, stamp, work)
+    led(scan_line.wrapping_add(1), false, work, |stamp, recalled, work| {
+        line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
+            let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
+            let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
+            Search { solver, fallback: &mut scratch.fallback, along, range }.run(slot, stamp, recalled, work)
+        })
     })
 }
 
@@ -98,9 +100,12 @@ impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> 
         mut self,
         slot: &mut Remembered<P::Scalar>,
         stamp: u32,
+        recalled: &mut bool,
         work: &mut Work,
-    ) -> Result<Option<Root<P::Scalar>>, Limit> {
-        let found = match self.resume(slot.recall(stamp), work)? {
+    ) -> Result<Option<Root<P::Parameter>>, Limit> {
+        let previous = slot.recall(stamp);
+        *recalled |= previous.is_some();
+        let found = match self.resume(previous, work)? {
             Some(root) => Some(root),
             None => self.in_full(work)?,
         };
@@ -112,7 +117,11 @@ impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> 
 
     /// The point found from the previous one's (u, v), verified or replaced by a closer one; `None` if the surface has to
     /// be searched in full.
-    fn resume(&mut self, previous: Option<[P::Scalar; 2]>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+    fn resume(
+        &mut self,
+        previous: Option<[P::Scalar; 2]>,
+        work: &mut Work,
+    ) -> Result<Option<Root<P::Parameter>>, Limit> {
         let Some(start) = previous else {
             return Ok(None);
         };
@@ -131,7 +140,7 @@ impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> 
     }
 
     /// The testing ray: the point itself if it is the closest, a closer one that it leads to, or `None` if it cannot tell.
-    fn verify(&mut self, point: Root<P::Scalar>, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+    fn verify(&mut self, point: Root<P::Parameter>, work: &mut Work) -> Result<Option<Root<P::Parameter>>, Limit> {
         let Search { solver, fallback, along, range } = self;
         let (planes, limits) = (solver.planes, solver.limits);
         let mut closest = Some(point);
@@ -165,12 +174,12 @@ impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> 
     }
 
     /// The closest root by a search along the ray, front to back, that ends where nothing farther on can hold a closer one.
-    fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Scalar>>, Limit> {
+    fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Parameter>>, Limit> {
         let (planes, limits) = (self.solver.planes, self.solver.limits);
         work.full_searches += 1;
         P::Scalar::tell(|| Event::FullSearch);
         let Search { solver, fallback, along, range } = self;
-        let mut best: Option<Root<P::Scalar>> = None;
+        let mut best: Option<Root<P::Parameter>> = None;
         along.ahead(planes, range, limits, work, |patch, crossing, work| {
             if crossing.overlaps(range) {
                 roots_of_patch(solver, *fallback, patch, crossing, First::AsCritical, work, |root, work| {

@@ -19,6 +19,7 @@ use crate::fallback::Fallback;
 use crate::limits::{GaveUp, Limit, Limits, Work};
 use crate::line::Line;
 use crate::newton::{Decided, Solver};
+use crate::parameter::Parameter;
 use crate::patch::Patch;
 use crate::planes::DepthRange;
 use crate::point::Point;
@@ -90,7 +91,7 @@ fn closest_so_far<P: Point, F: Fallback<P>>(
     ray: &Facing<P::Scalar>,
     limits: &Limits<P::Scalar>,
     scratch: &mut ScratchView<'_, P, F>,
-    best: &mut Option<Best<P::Scalar>>,
+    best: &mut Option<Best<P::Parameter>>,
     work: &mut Work,
 ) -> Result<(), Limit> {
     let planes = &ray.planes;
@@ -100,18 +101,25 @@ fn closest_so_far<P: Point, F: Fallback<P>>(
     let Some(surface) = view.surface(first as usize) else {
         return Err(Limit::Slot);
     };
+    let again;
     let solver = Solver::new(&surface, planes, limits, scratch.flat, &mut scratch.basis);
     let mut search = Search { view, ray, nearby, solver, fallback: &mut scratch.fallback };
-    let mut resumed = false;
+    let (mut resumed, mut led) = (false, false);
     if let (Some(start), Some(slot)) = (start, memory.slots.get_mut(last as usize)) {
         P::Scalar::tell(|| Event::Remembered(start.map(P::Scalar::to_f64)));
-        resumed = search.resume(start, slot, stamp, best, work)?;
+        // What the memory led into must not cost the ray its answer: see `led`.
+        led = true;
+        resumed = search.resume(start, slot, stamp, best, work).unwrap_or(false);
         work.start_failed += u32::from(!resumed);
         if !resumed {
             P::Scalar::tell(|| Event::StartFailed);
         }
     }
     if !resumed {
+        if led {
+            again = limits.beyond(work, work.spans_visited);
+            (search.solver.limits, search.solver.decided) = (&again, Decided::Nothing);
+        }
         *best = None;
         search.in_full(best, work)?;
     }
@@ -120,9 +128,13 @@ fn closest_so_far<P: Point, F: Fallback<P>>(
         // A root that a patch led to.
         if !best.kept {
             search.solver.turn_to(&view.surface(best.surface as usize).ok_or(Limit::Slot)?);
-            let local = search.solver.local([best.root.u, best.root.v], work)?;
             let slot = memory.slots.get_mut(best.surface as usize).ok_or(Limit::Memory)?;
-            slot.keep(&best.root, &local, ray, stamp);
+            match search.solver.local([best.root.u, best.root.v], work) {
+                Ok(local) => slot.keep(&best.root, &local, ray, stamp),
+                // Nothing is left for the next ray, and this one is answered.
+                Err(Limit::NewtonSteps) => {}
+                Err(limit) => return Err(limit),
+            }
         }
     }
     Ok(())
@@ -145,7 +157,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         start: [P::Scalar; 2],
         slot: &mut Followed<P::Scalar>,
         stamp: u32,
-        best: &mut Option<Best<P::Scalar>>,
+        best: &mut Option<Best<P::Parameter>>,
         work: &mut Work,
     ) -> Result<bool, Limit> {
         let Search { view, ray, nearby, solver, fallback } = self;
@@ -161,15 +173,15 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         slot.keep(&point, &local, ray, stamp);
         *best = Some(Best { root: point, surface, kept: true });
         P::Scalar::tell(|| Event::Testing);
-        let alone = Alone::new(&point, &local, solver.surface.bend);
+        let alone = Alone::new(&point, &local, solver.surface.shape.bend, planes.reach());
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
-        let claim = Claim::of(&point, surface, limits);
+        let claim = Claim::of(&point, surface, &solver.exact);
         let (mut verified, mut contested) = (true, false);
         let up_to = claim.up_to(best.as_ref());
         nearby.visit(planes, up_to, limits, work, exempt, |number, patch, crossing, work| {
             let farthest = claim.up_to(best.as_ref());
-            let owner = number == surface && patch.domain().holds(point.u, point.v);
+            let owner = number == surface && patch.domain().holds(point.u.number(), point.v.number());
             let known = if owner {
                 met_at_most_once(patch, crossing, limits)
             } else {
@@ -202,7 +214,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
     }
 
     /// The closest point by a search along the ray, front to back, that ends where nothing farther on can be closer.
-    fn in_full(&mut self, best: &mut Option<Best<P::Scalar>>, work: &mut Work) -> Result<(), Limit> {
+    fn in_full(&mut self, best: &mut Option<Best<P::Parameter>>, work: &mut Work) -> Result<(), Limit> {
         let Search { view, ray, nearby, solver, fallback } = self;
         let (planes, limits) = (&ray.planes, solver.limits);
         work.full_searches += 1;

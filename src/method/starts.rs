@@ -9,6 +9,7 @@ use crate::contract::{Single, single_of};
 use crate::fallback::Fallback;
 use crate::limits::{Acceptance, Limit, MAX_NEWTON_STARTS, Work};
 use crate::newton::{Decided, Solver};
+use crate::parameter::Parameter;
 use crate::patch::{Crossing, Patch};
 use crate::point::Point;
 use crate::region::Region;
@@ -35,7 +36,7 @@ pub(super) fn roots_of_patch<P: Point, F: Fallback<P>>(
     crossing: &Crossing<P::Scalar>,
     first: First,
     work: &mut Work,
-    mut found: impl FnMut(Root<P::Scalar>, &mut Work),
+    mut found: impl FnMut(Root<P::Parameter>, &mut Work),
 ) -> Result<(), Limit> {
     if F::COMPLETE && solver.limits.acceptance == Acceptance::Proved {
         return proved_roots(solver, fallback, patch, crossing, first, work, found);
@@ -57,7 +58,7 @@ fn proved_roots<P: Point, F: Fallback<P>>(
     crossing: &Crossing<P::Scalar>,
     first: First,
     work: &mut Work,
-    mut found: impl FnMut(Root<P::Scalar>, &mut Work),
+    mut found: impl FnMut(Root<P::Parameter>, &mut Work),
 ) -> Result<(), Limit> {
     if solver.decided == Decided::Surface {
         return Ok(());
@@ -69,7 +70,7 @@ fn proved_roots<P: Point, F: Fallback<P>>(
             return Ok(());
         }
     }
-    let region = Region { sides: patch.domain().bounds(), ..Region::WHOLE };
+    let region = Region::between(patch.domain().bounds());
     match single_of(solver, region, work)? {
         Single::Nothing => {
             work.excluded += 1;
@@ -95,14 +96,14 @@ fn is_decided<P: Point>(
     solver: &mut Solver<'_, '_, '_, P>,
     patch: &Patch<P::Scalar>,
     crossing: &Crossing<P::Scalar>,
-    root: &Root<P::Scalar>,
+    root: &Root<P::Parameter>,
     work: &mut Work,
 ) -> Result<bool, Limit> {
-    if patch.at_most_once(crossing) && patch.domain().holds(root.u, root.v) {
+    if patch.at_most_once(crossing) && patch.domain().holds(root.u.number(), root.v.number()) {
         return Ok(true);
     }
     let local = solver.local([root.u, root.v], work)?;
-    Ok(Alone::new(root, &local, solver.surface.bend).within(patch.domain().bounds()))
+    Ok(Alone::new(root, &local, solver.surface.shape.bend, solver.planes.reach()).within(patch.domain().bounds()))
 }
 
 /// Tries the starts of a patch in turn until one converges; `None`, counted as unresolved, if none does.
@@ -113,7 +114,7 @@ fn from_patch<P: Point>(
     crossing: &Crossing<P::Scalar>,
     first: First,
     work: &mut Work,
-) -> Result<Option<Root<P::Scalar>>, Limit> {
+) -> Result<Option<Root<P::Parameter>>, Limit> {
     let critical = patch.is_critical(crossing, solver.limits.critical_factor);
     work.critical += u32::from(critical);
     if critical {

@@ -1,20 +1,21 @@
 use super::*;
 use crate::bernstein::Basis;
 use crate::frame::{Aabb, Frame};
+use crate::parameter::Number;
 use crate::point::{Plain, Weighted};
-use crate::ray::Interval;
-use crate::surface::Net;
+use crate::ray::{Incidence, Interval};
+use crate::surface::{Net, Shape};
 
 /// The sheet z = 0 over the square of side 1/2 about 0, as a graph of u and v.
 const SHEET: [Plain<f64>; 4] =
     [Plain([-0.25, -0.25, 0.0]), Plain([-0.25, 0.25, 0.0]), Plain([0.25, -0.25, 0.0]), Plain([0.25, 0.25, 0.0])];
 
-fn straight_down(x: f64, y: f64) -> Result<Option<Root<f64>>, Limit> {
+fn straight_down(x: f64, y: f64) -> Result<Option<Root<Number<f64>>>, Limit> {
     let frame = Frame::new(Aabb { low: [-0.5; 3], high: [0.5; 3] });
     let ray = frame.ray([x, y, 2.0], [0.0, 0.0, -1.0]).unwrap();
     let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
     let net = Net::new(1, 1, &SHEET).unwrap();
-    let surface = Surface { number: 0, net, bend: net.bend() };
+    let surface = Surface { number: 0, net, shape: Shape::of(&net) };
     let (limits, mut work) = (Limits::default(), Work::default());
     let (mut flat, mut basis) = (heapless::Vec::<_, 4>::new(), Basis::<f64, 2>::new());
     Solver::new(&surface, &planes, &limits, &mut flat, &mut basis.view()).solve([0.5; 2], &mut work)
@@ -31,7 +32,8 @@ fn the_edge_is_as_wide_as_the_tolerance() {
                 let root = straight_down(x, y).unwrap();
                 assert_eq!(root.is_some(), found, "{beyond} {sign}");
                 if let Some(root) = root {
-                    let across = if y == 0.03 { root.u } else { root.v };
+                    let [u, v] = root.at();
+                    let across = if y == 0.03 { u } else { v };
                     assert_eq!(across, if sign < 0.0 { 0.0 } else { 1.0 });
                 }
             }
@@ -50,16 +52,16 @@ fn tangent_means_an_angle_not_a_small_determinant() {
     });
     let frame = Frame::new(Aabb { low: [-0.5; 3], high: [0.5; 3] });
     let net = Net::new(2, 1, &points).unwrap();
-    let surface = Surface { number: 0, net, bend: net.bend() };
+    let surface = Surface { number: 0, net, shape: Shape::of(&net) };
     let (mut flat, mut basis) = (heapless::Vec::<_, 6>::new(), Basis::<f64, 3>::new());
-    for (height, grazing) in [(1e-2, false), (1e-8, false), (1e-14, true)] {
+    for (height, incidence) in [(1e-2, Incidence::Crossing), (1e-8, Incidence::Crossing), (1e-15, Incidence::Grazing)] {
         let ray = frame.ray([-0.4, 0.1, height], [1.0, 0.0, 0.0]).unwrap();
         let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
         let (limits, mut work) = (Limits { newton_iterations: 40, ..Limits::default() }, Work::default());
         let mut basis = basis.view();
         let mut solver = Solver::new(&surface, &planes, &limits, &mut flat, &mut basis);
         let root = solver.solve([0.2, 0.5], &mut work).unwrap().unwrap();
-        assert_eq!(root.grazing, grazing, "{height} {root:?}");
+        assert_eq!(root.incidence, incidence, "{height} {root:?}");
     }
 }
 
@@ -73,7 +75,7 @@ fn a_step_by_a_singular_jacobian_is_not_believed() {
     let frame = Frame::new(bounds);
     let scaled = points.map(|point| Plain(frame.from_nets(point.0)));
     let net = Net::new(1, 2, &scaled).unwrap();
-    let surface = Surface { number: 0, net, bend: net.bend() };
+    let surface = Surface { number: 0, net, shape: Shape::of(&net) };
     let (limits, mut random) = (Limits::default(), 7_u32);
     let (mut flat, mut basis) = (heapless::Vec::<_, 6>::new(), Basis::<f64, 3>::new());
     let mut share = || {
@@ -93,7 +95,7 @@ fn a_step_by_a_singular_jacobian_is_not_believed() {
             none += 1;
             continue;
         };
-        let point = net.position(root.u, root.v, &mut basis).unwrap();
+        let point = net.position(root.u.number(), root.v.number(), &mut basis).unwrap();
         let (o, d) = (planes.origin(), planes.direction());
         let off = (0..3).fold(0.0, |off: f64, k| off.max((point[k] - o[k] - d[k] * root.depth).abs()));
         assert!(off <= 8.0 * limits.tolerance, "{root:?} is {off:e} off the ray");
@@ -113,7 +115,7 @@ fn a_tolerance_below_rounding_makes_no_jacobian_regular() {
     let frame = Frame::new(bounds);
     let scaled = points.map(|(point, weight)| Weighted::new(frame.from_nets(point), weight / 4.0));
     let net = Net::new(1, 1, &scaled).unwrap();
-    let surface = Surface { number: 0, net, bend: net.bend() };
+    let surface = Surface { number: 0, net, shape: Shape::of(&net) };
     let limits = Limits { tolerance: 1e-52, ..Limits::default() };
     let (mut flat, mut basis) = (heapless::Vec::<_, 4>::new(), Basis::<f64, 2>::new());
     let mut basis = basis.view();
@@ -126,7 +128,7 @@ fn a_tolerance_below_rounding_makes_no_jacobian_regular() {
             let mut work = Work::default();
             let mut solver = Solver::new(&surface, &planes, &limits, &mut flat, &mut basis);
             let Some(root) = solver.solve(start, &mut work).unwrap() else { continue };
-            let point = net.position(root.u, root.v, &mut basis).unwrap();
+            let point = net.position(root.u.number(), root.v.number(), &mut basis).unwrap();
             let (o, d) = (planes.origin(), planes.direction());
             let off = (0..3).fold(0.0, |off: f64, k| off.max((point[k] - o[k] - d[k] * root.depth).abs()));
             assert!(off <= 1e-9, "{root:?} is {off:e} off the ray");
@@ -154,7 +156,7 @@ fn a_step_by_a_determinant_that_is_partly_rounding_is_not_the_last() {
     let scaled: heapless::Vec<_, 14> =
         points.map(|(point, weight)| Weighted::new(frame.from_nets(point), weight / 4.0)).collect();
     let net = Net::new(1, 6, &scaled).unwrap();
-    let surface = Surface { number: 0, net, bend: net.bend() };
+    let surface = Surface { number: 0, net, shape: Shape::of(&net) };
     let limits = Limits::default();
     let (mut flat, mut basis) = (heapless::Vec::<_, 14>::new(), Basis::<f64, 7>::new());
     let mut basis = basis.view();
@@ -166,7 +168,7 @@ fn a_step_by_a_determinant_that_is_partly_rounding_is_not_the_last() {
         let mut solver = Solver::new(&surface, &planes, &limits, &mut flat, &mut basis);
         let Some(root) = solver.solve(start, &mut work).unwrap() else { continue };
         roots += 1;
-        let point = net.position(root.u, root.v, &mut basis).unwrap();
+        let point = net.position(root.u.number(), root.v.number(), &mut basis).unwrap();
         let (o, d) = (planes.origin(), planes.direction());
         let off = (0..3).fold(0.0, |off: f64, k| off.max((point[k] - o[k] - d[k] * root.depth).abs()));
         assert!(off <= 1e-9, "{root:?} from {start:?} is {off:e} off the ray");
@@ -183,7 +185,7 @@ fn a_weight_that_falls_toward_an_edge_hides_no_distance() {
         core::array::from_fn(|k| Weighted::new([[-0.25, 0.25][k / 2], [-0.25, 0.25][k % 2], 0.0], weight[k % 2]));
     let frame = Frame::new(Aabb { low: [-0.5; 3], high: [0.5; 3] });
     let net = Net::new(1, 1, &points).unwrap();
-    let surface = Surface { number: 0, net, bend: net.bend() };
+    let surface = Surface { number: 0, net, shape: Shape::of(&net) };
     let limits = Limits { tolerance: 1e-4, ..Limits::default() };
     for (beyond, met) in [(-1e-3, true), (0.0, true), (1e-5, true), (1e-3, false), (1e-2, false), (4e-2, false)] {
         let ray = frame.ray([0.0, 0.25 + beyond, 2.0], [0.0, 0.0, -1.0]).unwrap();

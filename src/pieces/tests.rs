@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::point::Plain;
+use crate::ray::Incidence;
 
 #[test]
 fn a_bezier_surface_is_its_own_piece() {
@@ -16,7 +17,7 @@ fn a_bezier_surface_is_its_own_piece() {
     assert!(pieces.net(1).is_none() && !pieces.is_empty());
     assert_eq!((pieces.nets().count(), pieces.nets_array::<1>().is_some()), (1, true));
     assert!(pieces.nets_array::<0>().is_none() && pieces.nets_array::<2>().is_none());
-    let hit = |surface| Hit { t: 0.0, u: 0.25, v: 1.0, surface, grazing: false };
+    let hit = |surface| Hit { t: 0.0, u: 0.25, v: 1.0, surface, incidence: Incidence::Crossing };
     assert_eq!(pieces.in_knots(&hit(0)), Some(InKnots { spline: 0, u: 0.0, v: 7.5 }));
     assert_eq!(pieces.in_knots(&hit(1)), None);
 }

@@ -1,8 +1,9 @@
 use super::*;
+use crate::parameter::{BothEnds, Number};
 use heapless::Vec;
 
-fn region(u: [f64; 2], v: [f64; 2]) -> Region<f64> {
-    Region { sides: [u, v], next: Direction::U }
+fn region(u: [f64; 2], v: [f64; 2]) -> Region<Number<f64>> {
+    Region::between([u, v])
 }
 
 /// Four regions wait, the previous point in one of them. The order is the prior region, its neighbours, the rest; "the
@@ -13,7 +14,7 @@ fn the_prior_region_then_its_neighbours_then_the_rest() {
     // A strip of four in u; the prior region is the second, at the border of the first bisection.
     let strip = [0.0, 0.25, 0.5, 0.75].map(|u| region([u, u + 0.25], [0.0, 1.0]));
     let [far, prior, across, farthest] = strip;
-    let point = [0.49, 0.3];
+    let point = [0.49, 0.3].map(Number::new);
     // Whatever the order in which they came.
     for turn in 0..4 {
         let mut pending = Vec::<_, 4>::new();
@@ -36,7 +37,7 @@ fn neighbours_come_before_what_is_only_near() {
     let neighbour = region([0.5, 1.0], [0.0, 0.2]);
     let near = region([0.0, 0.5], [0.3, 1.0]);
     let mut pending = Vec::<_, 4>::new();
-    let mut order = Order::around(Some([0.1, 0.19]));
+    let mut order = Order::around(Some([0.1, 0.19].map(Number::new)));
     for region in [near, neighbour, prior] {
         order.push(region, &mut pending, 4).unwrap();
     }
@@ -47,7 +48,7 @@ fn neighbours_come_before_what_is_only_near() {
 #[test]
 fn a_prior_region_that_is_bisected_leaves_its_half_as_the_prior_one() {
     let mut pending = Vec::<_, 8>::new();
-    let mut order = Order::around(Some([0.1, 0.1]));
+    let mut order = Order::around(Some([0.1, 0.1].map(Number::new)));
     let [low, high] = Region::WHOLE.halves(Direction::U).unwrap();
     order.push(high, &mut pending, 8).unwrap();
     order.push(low, &mut pending, 8).unwrap();
@@ -65,7 +66,7 @@ fn a_prior_region_that_is_bisected_leaves_its_half_as_the_prior_one() {
 fn without_a_point_the_newest_is_first() {
     let mut pending = Vec::<_, 8>::new();
     let mut order = Order::around(None);
-    let [low, high] = Region::<f64>::WHOLE.halves(Direction::V).unwrap();
+    let [low, high] = Region::<Number<f64>>::WHOLE.halves(Direction::V).unwrap();
     order.push(low, &mut pending, 8).unwrap();
     order.push(high, &mut pending, 1).unwrap_err();
     order.push(high, &mut pending, 8).unwrap();
@@ -76,11 +77,11 @@ fn without_a_point_the_newest_is_first() {
 fn parts_keep_ends_exact_and_halving_ends() {
     let mut part = region([0.1, 0.3], [0.0, 1.0]);
     part.narrow(Direction::U, [0.0, 1.0]);
-    assert_eq!(part.sides[0], [0.1, 0.3]);
+    assert_eq!(part.sides[0], [0.1, 0.3].map(Number::new));
     part.narrow(Direction::U, [0.5, 1.0]);
-    assert!((part.sides[0][0] - 0.2).abs() < 1e-16 && part.sides[0][1] == 0.3);
+    assert!((part.sides[0][0].number() - 0.2).abs() < 1e-16 && part.sides[0][1].number() == 0.3);
     let mut halvings = 0;
-    let mut at = Region::<f32>::WHOLE;
+    let mut at = Region::<Number<f32>>::WHOLE;
     while let Some([_, high]) = at.halves(Direction::U) {
         at = high;
         halvings += 1;
@@ -89,7 +90,26 @@ fn parts_keep_ends_exact_and_halving_ends() {
     assert!(at.widths()[0] <= f32::EPSILON);
     // Nothing is in common with a rectangle beside, and a border with one that adjoins.
     let left = region([0.0, 0.5], [0.0, 1.0]);
-    assert_eq!(left.meet([[0.6, 1.0], [0.0, 1.0]]), None);
-    assert_eq!(left.meet([[0.5, 1.0], [0.25, 2.0]]), Some(region([0.5, 0.5], [0.25, 1.0])));
-    assert_eq!(left.meet([[f64::NAN, 1.0], [0.0, 1.0]]), Some(left));
+    assert_eq!(left.meet(region([0.6, 1.0], [0.0, 1.0]).sides), None);
+    assert_eq!(left.meet(region([0.5, 1.0], [0.25, 2.0]).sides), Some(region([0.5, 0.5], [0.25, 1.0])));
+    assert_eq!(left.meet(region([f64::NAN, 1.0], [0.0, 1.0]).sides), Some(left));
+}
+
+/// A part that ends 1e-10 before 1 ends there, though no number tells its end from 1.
+#[test]
+fn a_number_that_rounds_to_one_is_not_one() {
+    let end = BothEnds::<f32>::ZERO.toward(BothEnds::ONE, 1.0, 1e-10);
+    assert_eq!((end.number(), end.rest()), (1.0, 1e-10));
+    assert!(end.is_below(BothEnds::ONE) && !BothEnds::ONE.is_at_most(end));
+    // Only without a rest the way is at its end.
+    assert_eq!(BothEnds::<f32>::ZERO.toward(BothEnds::ONE, 1.0, 0.0), BothEnds::ONE);
+    // So a rational surface's region can still be halved where a polynomial one's cannot.
+    let last = Region { sides: [[end, BothEnds::ONE]; 2], next: Direction::U };
+    let [low, high] = last.halves(Direction::U).unwrap();
+    assert_eq!([low.widths()[0], high.widths()[0]], [5e-11; 2]);
+    assert!(
+        !last.encloses([[BothEnds::ZERO, BothEnds::ONE]; 2]) && last.holds([BothEnds::ONE; 2]) && last.holds([end; 2])
+    );
+    let share = 1.0 - 1e-10_f32;
+    assert!(Region::<Number<f32>>::between([[share, 1.0]; 2]).halves(Direction::U).is_none());
 }

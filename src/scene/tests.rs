@@ -3,7 +3,9 @@
 extern crate std;
 
 use super::*;
+use crate::parameter::{Number, Parameter};
 use crate::point::Plain;
+use crate::ray::Incidence;
 use std::vec;
 use std::vec::Vec;
 
@@ -35,7 +37,13 @@ fn search(
         asked.push(surface.number);
         let depth = planes.point(&surface.net.points()[0].0).depth;
         let inside = range.min <= depth && depth <= range.max;
-        Ok(inside.then_some(Root { u: 0.5, v: 0.5, depth, grazing: false }))
+        Ok(inside.then_some(Root {
+            u: Number::new(0.5),
+            v: Number::new(0.5),
+            depth,
+            incidence: Incidence::Crossing,
+            turned: false,
+        }))
     })
 }
 

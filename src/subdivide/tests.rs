@@ -1,6 +1,7 @@
 use super::*;
 use crate::frame::Aabb;
 use crate::point::Plain;
+use crate::surface::{Net, Shape};
 
 fn measure(bend_u: f64, bend_v: f64, sides: [f64; 2]) -> Measure<f64> {
     let points = [[0.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0]].map(Plain);
@@ -24,27 +25,32 @@ fn the_more_bent_direction_is_halved_and_the_longer_of_straight_ones() {
 /// A saddle has no bend in u nor in v, only twist: it is halved all the same.
 #[test]
 fn a_saddle_is_halved_until_its_twist_is_flat() {
-    let points = [[0.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, 0.5]].map(Plain);
-    let net = Net::new(1, 1, &points).unwrap();
+    // One is so low that the flatness alone decides, one as high as it is long.
+    let saddle = |height| [[0.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, height]].map(Plain);
+    let [low, high] = [0.03125, 0.5].map(saddle);
     let frame = Frame::new(Aabb { low: [0.0; 3], high: [0.5; 3] });
     let mut patches = [Patch::EMPTY; 64];
     let mut first = [0; 2];
     let mut scratch = SubdivideScratch::<Plain<f64>, 4>::new();
     let twist =
-        |flatness: f64, patches: &mut [Patch<f64>], first: &mut [u32], view: &mut SubdivideScratchView<'_, _>| {
+        |points: &[_], flatness, patches: &mut [_], first: &mut [u32], view: &mut SubdivideScratchView<'_, _>| {
+            let net = Net::new(1, 1, points).unwrap();
+            let surface = Surface { number: 0, net, shape: Shape::of(&net) };
             let options = Subdivision { flatness, ..Default::default() };
             let memory = PatchMemory { patches, first };
-            let (patches, tree) = subdivide([net].into_iter(), &frame, &options, view, memory, None).unwrap();
+            let (patches, tree) = subdivide([surface].into_iter(), &frame, &options, view, memory, None).unwrap();
             assert!(tree.is_none());
             patches.all().len()
         };
-    // A quarter of 0.5 at the corners; a halving in each direction leaves a quarter of that.
+    // A quarter of the height at the corners; a halving in each direction leaves a quarter of that.
     let diagonal = frame.diagonal();
-    assert_eq!(twist(0.1251 / diagonal, &mut patches, &mut first, &mut scratch.view()), 1);
-    assert_eq!(twist(0.1249 / diagonal, &mut patches, &mut first, &mut scratch.view()), 2);
-    assert_eq!(twist(0.0313 / diagonal, &mut patches, &mut first, &mut scratch.view()), 4);
-    assert_eq!(twist(0.0079 / diagonal, &mut patches, &mut first, &mut scratch.view()), 16);
+    assert_eq!(twist(&low, 0.1251 / 16.0 / diagonal, &mut patches, &mut first, &mut scratch.view()), 1);
+    assert_eq!(twist(&low, 0.1249 / 16.0 / diagonal, &mut patches, &mut first, &mut scratch.view()), 2);
+    assert_eq!(twist(&low, 0.0313 / 16.0 / diagonal, &mut patches, &mut first, &mut scratch.view()), 4);
+    assert_eq!(twist(&low, 0.0079 / 16.0 / diagonal, &mut patches, &mut first, &mut scratch.view()), 16);
     assert_eq!(first, [0, 16]);
+    // However coarse the flatness: 1/32 of a side of 1/2 is three halvings below 1/8.
+    assert_eq!(twist(&high, 1.0, &mut patches, &mut first, &mut scratch.view()), 8);
 }
 
 #[test]

@@ -6,8 +6,9 @@ use crate::domain::Domain;
 use crate::frame::{Aabb, Frame};
 use crate::grid::{Grid, GridSlot};
 use crate::measure::Measure;
+use crate::parameter::Number;
 use crate::point::Plain;
-use crate::ray::Interval;
+use crate::ray::{Incidence, Interval};
 use crate::surface::Net;
 use crate::sweep::InGrid;
 use std::vec::Vec;
@@ -35,7 +36,8 @@ fn the_list_holds_what_lies_between_point_and_origin_from_the_point_on() {
     let (planes, range) = frame.enter(&ray, &Interval::ahead()).unwrap();
     let list = |height: f64, u: f64, nearest: f64, limits: &Limits<f64>| {
         let depth = height - planes.origin()[2];
-        let root = Root { u, v: 0.5, depth, grazing: false };
+        let root =
+            Root { u: Number::new(u), v: Number::new(0.5), depth, incidence: Incidence::Crossing, turned: false };
         let (mut listed, mut work) = (Vec::new(), Work::default());
         let end =
             testing_ray(&InGrid { grid, patches: &patches }, &planes, &root, nearest, limits, &mut work, |item, _| {
@@ -68,7 +70,13 @@ fn the_list_holds_what_lies_between_point_and_origin_from_the_point_on() {
         assert!(work.voxels_visited <= budget.voxels && work.patches_tested <= budget.patches);
     }
     // An error of the visitor ends it.
-    let root = Root { u: 0.75, v: 0.5, depth: 0.1 - planes.origin()[2], grazing: false };
+    let root = Root {
+        u: Number::new(0.75),
+        v: Number::new(0.5),
+        depth: 0.1 - planes.origin()[2],
+        incidence: Incidence::Crossing,
+        turned: false,
+    };
     let mut visits = 0;
     let end =
         testing_ray(&InGrid { grid, patches: &patches }, &planes, &root, 0.0, &limits, &mut Work::default(), |_, _| {
@@ -96,7 +104,13 @@ fn a_point_is_the_closest_or_critical_or_hidden_by_a_neighbour_or_by_another() {
         let grid = Grid::new(&slot, &offsets, &references).unwrap();
         let ray = frame.ray([0.1, 0.2, -3.0], [0.0, 0.01, 1.0]).unwrap();
         let (planes, range) = frame.enter(&ray, &Interval::ahead()).unwrap();
-        let root = Root { u, v: 0.5, depth: 0.1 - planes.origin()[2], grazing: false };
+        let root = Root {
+            u: Number::new(u),
+            v: Number::new(0.5),
+            depth: 0.1 - planes.origin()[2],
+            incidence: Incidence::Crossing,
+            turned: false,
+        };
         let limits = Limits { critical_factor: factor, ..Limits::default() };
         verdict(&InGrid { grid, patches }, &planes, &root, range.min, &limits, &mut Work::default()).unwrap()
     };

@@ -4,6 +4,7 @@ use crate::frame::{Frame, NEAR};
 use crate::outline::Outline;
 use crate::ray::RayError;
 use crate::scalar::{Scalar, Vector3};
+use crate::surface::APART;
 
 /// A pinhole camera, in the caller's coordinates: the ray of the image's point (x, y) starts at the eye and has the direction
 /// `forward + x · right + y · up`. The four need not be of unit length nor at right angles.
@@ -112,6 +113,11 @@ impl<S: Scalar> Lens<S> {
             lengths: [across[0].length().greater(across[1].length()), along.length()],
             exponents: [exponents[0] - exponents[1], exponents[0] - exponents[2]],
         })
+    }
+
+    /// Whether the eye's coordinates are much smaller than the scene's: see [`Shape::is_apart`].
+    pub(super) fn eye_is_apart(&self) -> bool {
+        S::Vec3::from_array(self.eye).largest() < S::from_f32(APART)
     }
 
     /// Where what these points of the frame enclose is seen, and all that is as near to them as boxes are padded.

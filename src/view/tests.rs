@@ -71,7 +71,7 @@ fn found_and_expected<S: Scalar>(scale: f64, place: [f64; 2]) -> Option<([f64; 3
             let [e, f, r, u] = [camera.eye, camera.forward, camera.right, camera.up].map(|v| v[k].to_f64());
             (e + t * (f + x * r + y * u)) / scale
         };
-        let (p, q) = (root.u.to_f64() * 2.0 - 1.0, root.v.to_f64() * 2.0 - 1.0);
+        let [p, q] = root.at().map(|c| c.to_f64() * 2.0 - 1.0);
         Some(([p, q, p * q], core::array::from_fn(along)))
     })
 }

@@ -251,6 +251,8 @@ fn wrong_rays_and_limits_are_refused() {
             spoilt(PATCHRAY_RAY_INTERVAL, "t_min of NaN", &|p| p.ray.t_min = nan);
             spoilt(PATCHRAY_RAY_INTERVAL, "t_max of NaN", &|p| p.ray.t_max = nan);
             spoilt(PATCHRAY_RAY_INTERVAL, "t_min after t_max", &|p| (p.ray.t_min, p.ray.t_max) = (one, zero));
+            let infinity = P::Scalar::INFINITY;
+            spoilt(PATCHRAY_RAY_INTERVAL, "infinities", &|p| (p.ray.t_min, p.ray.t_max) = (infinity, -infinity));
             spoilt(PATCHRAY_OPTION, "a tolerance of NaN", &|p| p.limits.tolerance = nan);
             spoilt(PATCHRAY_OPTION, "a critical factor of NaN", &|p| p.limits.critical_factor = nan);
             spoilt(PATCHRAY_OPTION, "an infinite threshold", &|p| p.limits.clip_threshold = infinity);

@@ -16,7 +16,7 @@ static bool NAME(fold_hit)(int32_t code, const NAME(patchray_hit) * hit, const p
     if (code == PATCHRAY_HIT) {
         sound = NAME(fold_real)(hit->t) && NAME(fold_real)(hit->u) && NAME(fold_real)(hit->v);
         fold(hit->surface);
-        fold(hit->grazing);
+        fold(hit->incidence);
     }
     fold_work(work);
     return sound;

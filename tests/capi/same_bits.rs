@@ -60,9 +60,14 @@ impl<P: Kind> InRust<P> {
     }
 }
 
+/// A hit as the C interface writes it.
+pub(crate) fn hit_in_c<S>(Hit { t, u, v, surface, incidence }: Hit<S>) -> patchray_hit<S> {
+    patchray_hit { t, u, v, surface, incidence: incidence as u32 }
+}
+
 /// A hit's words, as they are hashed; `None` has none.
-pub(crate) fn words<S: Scalar>(hit: Option<Hit<S>>) -> Vec<u32> {
-    let Some(Hit { t, u, v, surface, grazing }) = hit else {
+pub(crate) fn words<S: Scalar>(hit: Option<patchray_hit<S>>) -> Vec<u32> {
+    let Some(patchray_hit { t, u, v, surface, incidence }) = hit else {
         return vec![];
     };
     let numbers = [t, u, v].into_iter().flat_map(|number| {
@@ -72,7 +77,7 @@ pub(crate) fn words<S: Scalar>(hit: Option<Hit<S>>) -> Vec<u32> {
         let bits = number.to_f64().to_bits();
         vec![bits as u32, (bits >> 32) as u32]
     });
-    numbers.chain([surface, u32::from(grazing)]).collect()
+    numbers.chain([surface, incidence]).collect()
 }
 
 /// What a hash begins with.
@@ -102,7 +107,10 @@ fn lines<P: Views>(precision: &str, out: &mut String) {
             let interval = Interval::new(P::Scalar::ZERO, t_max).unwrap();
             let mut work = Work::default();
             let hit = rust.closest(number, row, &ray, &interval, &mut work).unwrap();
-            fold(&mut hash, [u32::from(hit.is_some())].into_iter().chain(words(hit)).chain(work.counts()));
+            fold(
+                &mut hash,
+                [u32::from(hit.is_some())].into_iter().chain(words(hit.map(hit_in_c))).chain(work.counts()),
+            );
             hits += u32::from(hit.is_some());
 
             c.ray = patchray_ray { origin, direction, t_min: P::Scalar::ZERO, t_max };
@@ -110,8 +118,7 @@ fn lines<P: Views>(precision: &str, out: &mut String) {
             (arguments.line, arguments.limits) = (row, core::ptr::null());
             // SAFETY: the arguments of a right call.
             let code = unsafe { (method.call)(&arguments) };
-            let patchray_hit { t, u, v, surface, grazing } = c.hit;
-            let hit = (code == PATCHRAY_HIT).then_some(Hit { t, u, v, surface, grazing: grazing == 1 });
+            let hit = (code == PATCHRAY_HIT).then_some(c.hit);
             // SAFETY: 22 numbers of 32 bits.
             let counts: [u32; Work::COUNT] = unsafe { core::mem::transmute(c.work) };
             fold(&mut hash_in_c, [code as u32].into_iter().chain(words(hit)).chain(counts));
@@ -146,8 +153,12 @@ fn hard_surfaces_have_the_same_answers() {
                     continue;
                 };
                 let mut work = Work::default();
-                let found = rust.closest(method, line, &ray, &Interval::ahead(), &mut work);
-                c.ray = patchray_ray { origin, direction, t_min: P::Scalar::ZERO, t_max: P::Scalar::INFINITY };
+                // Every third ray is a whole line.
+                let t_min = if line % 3 == 0 { -P::Scalar::INFINITY } else { P::Scalar::ZERO };
+                let t_max = P::Scalar::INFINITY;
+                let interval = Interval::new(t_min, t_max).expect("it holds every t");
+                let found = rust.closest(method, line, &ray, &interval, &mut work);
+                c.ray = patchray_ray { origin, direction, t_min, t_max };
                 let mut arguments = c.arguments();
                 arguments.line = line;
                 // SAFETY: the arguments of a right call.
@@ -164,14 +175,14 @@ fn hard_surfaces_have_the_same_answers() {
                 };
                 assert_eq!(best.map_or(PATCHRAY_NO_SURFACE, |hit| hit.surface), c.hit.surface, "{name}");
                 if let Some(hit) = best {
-                    let patchray_hit { t, u, v, surface, grazing } = c.hit;
-                    let in_c = Hit { t, u, v, surface, grazing: grazing == 1 };
-                    assert_eq!(words(Some(hit)), words(Some(in_c)), "{name}");
+                    assert_eq!(words(Some(hit_in_c(hit))), words(Some(c.hit)), "{name}");
                     let mut normal = [P::Scalar::ZERO; 3];
                     // SAFETY: addresses of what is asked for.
                     assert_eq!(unsafe { P::NORMAL(&c.scene, &c.hit, &mut normal) }, PATCHRAY_OK);
                     let mut basis = patchray::bernstein::Basis::<_, 16>::new();
-                    assert_eq!(Ok(normal), rust.prepared.scene().normal(&hit, &mut basis.view()));
+                    let in_rust =
+                        rust.prepared.scene().normal(&hit, &mut basis.view()).expect("the basis is large enough");
+                    assert_eq!(normal, in_rust.unwrap_or([P::Scalar::ZERO; 3]), "{name}");
                 }
                 assert_eq!(patchray_work::from(work), c.work, "{name}");
             }
@@ -187,40 +198,56 @@ fn hard_surfaces_have_the_same_answers() {
     }
 }
 
+/// What a list with this much room holds of the hits of a ray.
+fn list_of(c: &mut Prepared<f64>, room: usize) -> (i32, Vec<patchray_hit<f64>>) {
+    let mut hits = vec![c.hit; room];
+    let (mut found, a) = (usize::MAX, c.arguments());
+    // SAFETY: addresses of as much as said.
+    let code = unsafe {
+        patchray_clipping_all_f64(
+            a.scene,
+            a.ray,
+            a.limits,
+            a.scratch,
+            a.words,
+            hits.as_mut_ptr(),
+            room,
+            &mut found,
+            a.work,
+        )
+    };
+    hits.truncate(found);
+    (code, hits)
+}
+
 #[test]
 fn all_hits_come_in_order_and_a_short_list_holds_the_closest() {
     let model = teapot_in_float();
     let mut c = Prepared::of::<Plain<f64>>(&model);
     // Through handle, body and spout.
     c.ray = patchray_ray { origin: [-10.0, 0.01, 1.9], direction: [1.0, 0.0, 0.0], t_min: 0.0, t_max: 1e9 };
-    let mut list = |room: usize| {
-        let mut hits = vec![c.hit; room];
-        let (mut found, a) = (usize::MAX, c.arguments());
-        // SAFETY: addresses of as much as said.
-        let code = unsafe {
-            patchray_clipping_all_f64(
-                a.scene,
-                a.ray,
-                a.limits,
-                a.scratch,
-                a.words,
-                hits.as_mut_ptr(),
-                room,
-                &mut found,
-                a.work,
-            )
-        };
-        hits.truncate(found);
-        (code, hits)
-    };
-    let (code, all) = list(40);
+    let (code, all) = list_of(&mut c, 40);
     assert_eq!(code, PATCHRAY_HIT);
     assert!(all.len() >= 6 && all.is_sorted_by(|a, b| a.t <= b.t), "{all:?}");
     for room in 0..all.len() {
-        let (code, some) = list(room);
+        let (code, some) = list_of(&mut c, room);
         assert_eq!((code, &some[..]), (PATCHRAY_GAVE_UP_HITS, &all[..room]));
     }
-    c.ray.t_max = 1.0;
+    // As a whole line it is met at the same places, whichever of its points is the origin.
+    c.ray = patchray_ray { origin: [0.0, 0.01, 1.9], t_min: f64::NEG_INFINITY, t_max: f64::INFINITY, ..c.ray };
+    let (code, whole) = list_of(&mut c, 40);
+    assert_eq!((code, whole.len()), (PATCHRAY_HIT, all.len()));
+    assert!(
+        whole.iter().zip(&all).all(|(a, b)| (a.t + 10.0 - b.t).abs() < 1e-9 && a.surface == b.surface),
+        "{whole:?}"
+    );
+    assert!(whole[0].t < 0.0);
+    // No t is infinite.
+    for end in [f64::NEG_INFINITY, f64::INFINITY] {
+        (c.ray.t_min, c.ray.t_max) = (end, end);
+        assert_eq!(list_of(&mut c, 40), (PATCHRAY_MISS, vec![]));
+    }
+    c.ray = patchray_ray { origin: [-10.0, 0.01, 1.9], t_min: 0.0, t_max: 1.0, ..c.ray };
     // SAFETY: as above.
     let a = c.arguments();
     let (mut hit, mut found) = (c.hit, 9);

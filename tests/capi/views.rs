@@ -5,13 +5,13 @@ use crate::errors::{model, name, off, off_mut};
 use crate::lent::{Prepared, WORDS};
 use crate::lent_lines::{Arguments, Views};
 use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
-use crate::same_bits::{START, fold, words};
+use crate::same_bits::{START, fold, hit_in_c, words};
 use core::ptr::{null, null_mut};
 use patchray::capi::*;
 use patchray::limits::{GaveUp, Limits, Work};
 use patchray::line::Window;
 use patchray::point::{Plain, Weighted};
-use patchray::ray::{Hit, Interval};
+use patchray::ray::Interval;
 use patchray::scalar::Scalar;
 use patchray::view::Camera;
 use patchray_host::scene::model::Model;
@@ -206,11 +206,7 @@ fn in_rust<P: Views>(
                 Ok(hit) => (i32::from(hit.is_some()), hit),
                 Err(GaveUp { best, .. }) => (-1, best),
             };
-            let hit = hit.map(|Hit { t, u, v, surface, grazing }| {
-                let grazing = u32::from(grazing);
-                patchray_hit { t, u, v, surface, grazing }
-            });
-            each((code, hit, thread.work.counts()));
+            each((code, hit.map(hit_in_c), thread.work.counts()));
         }
     }
 }
@@ -276,8 +272,6 @@ pub(crate) fn lines<P: Views>(model: &Model, precision: &str, out: &mut String) 
         let answers = in_c::<P>(&mut seen, method);
         let (mut hash, hits) = (START, answers.iter().filter(|answer| answer.1.is_some()).count());
         for (code, hit, counts) in answers {
-            let hit =
-                hit.map(|patchray_hit { t, u, v, surface, grazing }| Hit { t, u, v, surface, grazing: grazing == 1 });
             fold(&mut hash, [code as u32].into_iter().chain(words(hit)).chain(counts));
         }
         *out += &format!("{name}-line {precision} {hits} {hash:x}\n");

@@ -3,6 +3,7 @@
 use crate::ask::{Answers, Query};
 use crate::common::{Built, Kind, dot, norm};
 use patchray::bernstein::Basis;
+use patchray::ray::Incidence;
 use patchray::scalar::Scalar;
 use patchray_host::oracle::{Oracle, Verdict};
 
@@ -72,8 +73,8 @@ impl Tally {
             let near = (0..taken.len()).find(|&k| {
                 let hit = &answers.hits[k];
                 let normal = scene.normal(hit, &mut Basis::<P::Scalar, 16>::new().view()).unwrap();
-                let normal = normal.map(Scalar::to_f64);
-                let cosine = if norm(normal) > 0.0 { dot(normal, query.direction).abs() / speed } else { 1.0 };
+                let normal = normal.map(|normal| normal.map(Scalar::to_f64));
+                let cosine = normal.map_or(1.0, |normal| dot(normal, query.direction).abs() / speed);
                 // From far away, t itself is rounded.
                 let far = 8.0 * P::Scalar::EPSILON.to_f64() * root.t.abs() * speed;
                 let off = (allowed.across / cosine).min(allowed.most) * size + root.blur * size + far;
@@ -90,7 +91,7 @@ impl Tally {
         for (hit, _) in answers.hits.iter().zip(&taken).filter(|(_, taken)| !**taken) {
             // The oracle's margin says nothing of roots behind the closest: a graze or a root on an edge is left out.
             let [u, v] = [hit.u, hit.v].map(Scalar::to_f64);
-            if !(hit.grazing || [u, v].iter().any(|c| *c == 0.0 || *c == 1.0)) {
+            if !(hit.incidence != Incidence::Crossing || [u, v].iter().any(|c| *c == 0.0 || *c == 1.0)) {
                 self.phantom += 1;
                 println!("phantom {hit:?} of {query:?}: {roots:?}");
             }

@@ -27,7 +27,7 @@ pub fn solve<P: Point>(
     start: [P::Scalar; 2],
     limits: &Limits<P::Scalar>,
     work: &mut Work,
-) -> Result<Option<Root<P::Scalar>>, Limit> {
+) -> Result<Option<Root<P::Parameter>>, Limit> {
     let mut scratch = Scratch::<P, 16, 256>::new();
     let mut view = scratch.view();
     Solver::new(surface, planes, limits, view.flat, &mut view.basis).solve(start, work)
@@ -148,7 +148,7 @@ impl<P: Kind> Prepared<P> {
         let mut scratch = subdivide_scratch();
         let mut view = scratch.view();
         let ask = subdivide(
-            scene.nets(),
+            scene.surfaces(),
             scene.frame(),
             options,
             &mut view,
@@ -162,7 +162,7 @@ impl<P: Kind> Prepared<P> {
         let mut links = vec![0; needs.links.needed];
         let memory = PatchMemory { patches: &mut patches, first: &mut first };
         let tree = TreeMemory { nodes: &mut nodes, links: &mut links };
-        subdivide(scene.nets(), scene.frame(), options, &mut view, memory, Some(tree)).unwrap();
+        subdivide(scene.surfaces(), scene.frame(), options, &mut view, memory, Some(tree)).unwrap();
         let filled = Patches::new(&patches, &first);
         let count = model.surfaces.len();
         let nothing = GridMemory { grids: &mut [], offsets: &mut [], references: &mut [] };

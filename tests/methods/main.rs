@@ -11,9 +11,10 @@ use adapters::{ADAPTERS, Adapter};
 use allowances::{Allowed, in_common_view, skip};
 use corpus::{Case, Rays};
 use judging::{rays_per_case, residual, truths};
+use patchray::ray::Incidence;
 use patchray_host::batch::Batch;
 use patchray_host::judge::{Agreement, Truth, allowance};
-use patchray_host::scanline::{Found, Outcome};
+use patchray_host::scanline::{Found, Normal, Outcome};
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::trace::Precision;
 
@@ -135,9 +136,14 @@ fn no_adapter_can_pass_without_looking() {
     let mut agreement = Agreement::default();
     for (ray, truth) in rays.iter().zip(&truths) {
         let outcome = match truth.closest {
-            Some(t) => {
-                Outcome::Hit(Found { t: t * (1.0 + 1e-6), u: 0.5, v: 0.5, surface: 0, normal: None, grazing: false })
-            }
+            Some(t) => Outcome::Hit(Found {
+                t: t * (1.0 + 1e-6),
+                u: 0.5,
+                v: 0.5,
+                surface: 0,
+                normal: Normal::Nowhere,
+                incidence: Incidence::Crossing,
+            }),
             None => Outcome::Miss,
         };
         agreement.add(&outcome, truth, ray.direction, diagonal, &allowance(Precision::F64));

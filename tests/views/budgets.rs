@@ -5,10 +5,10 @@ use crate::common::{Kind, Prepared};
 use crate::corpus::cases;
 use crate::image::rows;
 use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
-use patchray::limits::{Extent, Limit, Limits, Work};
+use patchray::limits::{Extent, GaveUp, Limit, Limits, Work};
 use patchray::line::Window;
 use patchray::point::{Plain, Weighted};
-use patchray::ray::Interval;
+use patchray::ray::{Hit, Interval};
 use patchray::scalar::Scalar;
 use patchray::subdivide::Subdivision;
 use patchray_host::scene::model::Model;
@@ -51,6 +51,7 @@ fn every_budget<P: Kind>(name: &str) -> [u32; 6] {
                 let (mut straight, mut again) = (line_room.clone(), line_room);
                 let mut straight = straight.line(&view, method, window).unwrap();
                 let mut thread = Thread::new(surfaces.len());
+                let nothing = (thread.remembered.clone(), thread.followed.clone(), thread.last);
                 for place in &row.places {
                     let ray = view.ray(place.map(P::Scalar::from_f64), &Interval::ahead()).unwrap();
                     let memory = (thread.remembered.clone(), thread.followed.clone(), thread.last);
@@ -59,7 +60,7 @@ fn every_budget<P: Kind>(name: &str) -> [u32; 6] {
                     let after = (thread.remembered.clone(), thread.followed.clone(), thread.last);
                     for (b, (limit, set, counter)) in budgets::<P::Scalar>().into_iter().enumerate() {
                         // In a line of its own, which counts what building the list takes.
-                        let mut run = |small: &Limits<P::Scalar>| {
+                        let mut run = |small: &Limits<P::Scalar>, memory: &(Vec<_>, Vec<_>, _)| {
                             let mut line = again.line(&view, method, window).unwrap();
                             (thread.remembered, thread.followed, thread.last) = memory.clone();
                             let answer = thread.trace(method, &view, &mut line, number, &ray, small);
@@ -67,24 +68,51 @@ fn every_budget<P: Kind>(name: &str) -> [u32; 6] {
                             // Out of a budget, and then with enough: as if nothing had been.
                             (thread.remembered, thread.followed, thread.last) = memory.clone();
                             let then = thread.trace(method, &view, &mut line, number, &ray, &limits);
-                            assert_eq!(then, Ok(full));
-                            (answer, work)
+                            (answer, work, then)
                         };
-                        let (answer, used) = run(&limits);
-                        assert_eq!(answer, Ok(full));
+                        let (answer, used, then) = run(&limits, &memory);
+                        assert_eq!([answer, then], [Ok(full); 2]);
                         let needed = counter(&used);
                         let some = (0..needed).step_by((needed as usize / 8).max(1));
                         for n in some.chain([needed.saturating_sub(1), needed, needed + 1]) {
                             let mut small = limits;
                             set(&mut small, n);
-                            let (answer, work) = run(&small);
-                            assert!(counter(&work) <= n, "{limit}: {} of {n}", counter(&work));
+                            let (answer, work, then) = run(&small, &memory);
+                            assert_eq!(then, Ok(full));
+                            // The search that memory led, and the one without.
+                            let searches = if method.remembers() { 2 } else { 1 };
+                            assert!(counter(&work) <= searches * n, "{limit}: {} of {n}", counter(&work));
                             if n >= needed {
                                 assert_eq!((answer, work), (Ok(full), used), "{limit} {n}");
                                 continue;
                             }
+                            // Short of what the ray needs: without memory it may need less.
+                            if method.remembers() {
+                                let (alone, ..) = run(&small, &nothing);
+                                if alone.is_ok() {
+                                    assert!(counter(&work) >= n);
+                                    // Another start may round otherwise.
+                                    let t = |answer: &Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>>| {
+                                        answer.map(|hit| hit.map(|hit| hit.t.to_f64())).ok()
+                                    };
+                                    let near = match (t(&answer), t(&alone)) {
+                                        (Some(Some(a)), Some(Some(b))) => {
+                                            (a - b).abs() <= 64.0 * P::Scalar::EPSILON.to_f64() * b
+                                        }
+                                        (a, b) => a == b,
+                                    };
+                                    assert!(near, "{method:?} {limit} {n}");
+                                    continue;
+                                }
+                                // What memory led into may leave more to the rest than a search without it has.
+                                if let Ok(hit) = answer {
+                                    assert!(counter(&work) > n && hit.is_some() == full.is_some());
+                                    continue;
+                                }
+                            }
                             let short = answer.expect_err("a budget that is too small is not an answer");
-                            assert_eq!((short.limit, counter(&work)), (limit, n), "{method:?}");
+                            assert_eq!(short.limit, limit, "{method:?}");
+                            assert!(counter(&work) >= n);
                             gave_up[b] += 1;
                         }
                     }

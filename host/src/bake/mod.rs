@@ -9,6 +9,7 @@ use patchray::patch::{Parallelepiped, Patch};
 use patchray::point::Point;
 use patchray::scalar::Scalar;
 use patchray::scene::SurfaceSlot;
+use patchray::surface::Surface;
 
 use crate::lower::{Lowered, Stages};
 use crate::memory::Kind;
@@ -24,7 +25,7 @@ pub enum Slot {
     Plain,
     /// [`Weighted`](patchray::point::Weighted): 4 reals.
     Weighted,
-    /// [`SurfaceSlot`]: 9 reals, 3 words.
+    /// [`SurfaceSlot`]: 12 reals, 3 words.
     Surface,
     /// [`Patch`]: 13 reals, 2 words.
     Patch,
@@ -114,7 +115,7 @@ impl Baked {
         let header = scene.header();
         let (scales, corners, sizes, exponent) = header.frame().numbers();
         let reals = scales.into_iter().chain(corners.into_iter().flatten()).chain(sizes);
-        let orders = scene.nets().map(|net| [net.degree_u() + 1, net.degree_v() + 1]);
+        let orders = scene.surfaces().map(|Surface { net, .. }| [net.degree_u() + 1, net.degree_v() + 1]);
         let (order, net) = orders.fold((1, 1), |(order, net), [u, v]| (order.max(u).max(v), net.max(u * v)));
         Baked {
             method,

@@ -4,6 +4,7 @@
 
 use indicatif::ProgressBar;
 use patchray::limits::Work;
+use patchray::ray::Incidence;
 use rayon::prelude::*;
 
 use super::{Channel, Channels, Values};
@@ -22,7 +23,7 @@ use crate::viewed::{Viewed, Wishes};
 pub const NONE: u32 = u32::MAX;
 
 /// Codes of the channel `status`, in their order.
-pub const STATUS: [&str; 5] = ["miss", "hit", "graze", GIVEN_UP, "refused"];
+pub const STATUS: [&str; 6] = ["miss", "hit", "graze", GIVEN_UP, "refused", "contact"];
 
 /// The code of rays that ran out of a budget.
 pub const GIVEN_UP: &str = "gave up";
@@ -143,7 +144,14 @@ pub fn of_view(model: &Model, settings: &Settings, view: &View, bar: &ProgressBa
 fn seen(model: &Model, ray: &RayLine, outcome: &Outcome, work: Work) -> Seen {
     let (status, found) = match outcome {
         Outcome::Miss => (0, None),
-        Outcome::Hit(found) => (if found.grazing { 2 } else { 1 }, Some(found)),
+        Outcome::Hit(found) => {
+            let status = match found.incidence {
+                Incidence::Crossing => 1,
+                Incidence::Grazing => 2,
+                Incidence::Contact => 5,
+            };
+            (status, Some(found))
+        }
         // The closest that was found by then is no answer.
         Outcome::GaveUp { .. } => (3, None),
         Outcome::Refused(_) | Outcome::Invalid => (4, None),
@@ -153,7 +161,7 @@ fn seen(model: &Model, ray: &RayLine, outcome: &Outcome, work: Work) -> Seen {
         Met {
             distance: found.t * length,
             point: [0, 1, 2].map(|k| ray.origin[k] + found.t * ray.direction[k]),
-            normal: found.normal,
+            normal: found.normal.there(),
             at: [found.u, found.v],
             surface: found.surface,
             residual: model.surfaces.get(found.surface).map_or(f64::NAN, |surface| residual(surface, ray, found)),

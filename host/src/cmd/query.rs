@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use patchray::ray::Incidence;
 
 use super::load::{self, Loaded};
 use super::outputs::{Outputs, StatsOutputs};
@@ -225,12 +226,15 @@ fn answer<S: Number>(outcome: &Outcome, loaded: &Loaded, narrow: impl Fn(f64) ->
             u: narrow(u),
             v: narrow(v),
             patch: loaded.answered_number_of(found.surface),
-            normal: found.normal.map(|normal| normal.map(&narrow)),
+            normal: found.normal.there().map(|normal| normal.map(&narrow)),
         }
     };
     match outcome {
-        Outcome::Hit(found) if found.grazing => Answer::Graze(line(found)),
-        Outcome::Hit(found) => Answer::Hit(line(found)),
+        Outcome::Hit(found) => match found.incidence {
+            Incidence::Crossing => Answer::Hit(line(found)),
+            Incidence::Grazing => Answer::Graze(line(found)),
+            Incidence::Contact => Answer::Contact(line(found)),
+        },
         Outcome::Miss => Answer::Miss,
         Outcome::GaveUp { limit, best } => Answer::GaveUp { limit, best: best.as_ref().map(line) },
         Outcome::Refused(_) | Outcome::Invalid => Answer::Invalid,

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use patchray::limits::Work;
+use patchray::ray::Incidence;
 use patchray::story::Event;
 
 use super::Story;
@@ -54,9 +55,13 @@ impl Story {
     fn answer(&self, outcome: &Outcome, name: &impl Fn(usize) -> String) -> String {
         match outcome {
             Outcome::Hit(found) => {
-                let graze = if found.grazing { ", a graze" } else { "" };
+                let incidence = match found.incidence {
+                    Incidence::Crossing => "",
+                    Incidence::Grazing => ", a graze",
+                    Incidence::Contact => ", where a stretch begins on which the ray lies in the surface",
+                };
                 format!(
-                    "it meets {} at (u, v) = ({}, {}), t = {}{graze}",
+                    "it meets {} at (u, v) = ({}, {}), t = {}{incidence}",
                     name(found.surface),
                     found.u,
                     found.v,
@@ -135,10 +140,14 @@ impl Telling<'_> {
                 self.line(3, &format!("step {step}: ({u}, {v}), {:.3e} off the ray", residual * unit));
             }
             Event::Stuck => self.line(3, "leads to no root"),
-            Event::Root { at: [u, v], grazing, .. } => {
+            Event::Root { at: [u, v], incidence, .. } => {
                 self.step = 0;
-                let graze = if grazing { ", the ray tangent to it" } else { "" };
-                self.line(2, &format!("a root at (u, v) = ({u}, {v}){graze}"));
+                let incidence = match incidence {
+                    Incidence::Crossing => "",
+                    Incidence::Grazing => ", the ray tangent to it",
+                    Incidence::Contact => ", where the ray begins to lie in it",
+                };
+                self.line(2, &format!("a root at (u, v) = ({u}, {v}){incidence}"));
             }
             Event::Clip { sides, in_v, left } => {
                 let side = if in_v { "v" } else { "u" };

@@ -58,8 +58,8 @@ fn same<'a, R: Real>(a: &[Point<R>], b: impl ExactSizeIterator<Item = &'a Point<
 
 impl<R: Real> Edges<R> {
     /// The edges of surfaces given by degrees and control points; those of surface `s` are numbers `4 s` to `4 s + 3`.
-    /// Points are the same if no coordinate differs by more than `tolerance`.
-    pub(super) fn new<'a>(surfaces: impl Iterator<Item = (Degrees, &'a [Point<R>])>, tolerance: f64) -> Edges<R> {
+    /// Points are the same if no coordinate differs by more than `share` of the edge's largest.
+    pub(super) fn new<'a>(surfaces: impl Iterator<Item = (Degrees, &'a [Point<R>])>, share: f64) -> Edges<R> {
         let mut polygons = Vec::new();
         let mut edges = Vec::new();
         for (degrees, points) in surfaces {
@@ -73,7 +73,12 @@ impl<R: Real> Edges<R> {
         let least = |k: usize| polygons[k].iter().fold(R::INFINITY, |m, p| if p[0] < m { p[0] } else { m });
         let mut order: Vec<(R, usize)> = (0..polygons.len()).map(|k| (least(k), k)).collect();
         order.sort_by(|a, b| a.0.order(&b.0));
+        let largest = |polygon: &[Point<R>]| {
+            let coordinates = polygon.iter().flat_map(|p| &p[..3]);
+            coordinates.fold(0.0, |m, x| f64::max(m, x.abs().to_f64()))
+        };
         for (position, &(x, a)) in order.iter().enumerate() {
+            let tolerance = share * largest(&polygons[a]);
             for &(other, b) in &order[position + 1..] {
                 if other > x + R::new(tolerance) {
                     break;

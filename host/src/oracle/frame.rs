@@ -10,12 +10,16 @@ use super::real::Real;
 /// A ray's frame.
 #[derive(Clone, Debug)]
 pub(super) struct Frame<R> {
-    /// The frame's origin: the ray's point nearest to the model's centre, as far as numbers can state it.
+    /// The ray's origin and direction as given.
+    ray: [[f64; 3]; 2],
+    /// The frame's origin: the ray's point nearest to a centre, as far as numbers can state it.
     origin: [R; 3],
     /// What that point may be off by, apart from the rounding of its coordinates.
     slip: f64,
     /// The ray's parameter at that point.
     shift: R,
+    /// The depth of the frame's origin in the frame that this one was moved from; 0 of one that was not.
+    start: R,
     /// The length of the ray's direction.
     length: R,
     /// The normals of the two planes and the ray's direction, all of length 1.
@@ -35,7 +39,7 @@ fn unit<R: Real>(a: [R; 3]) -> [R; 3] {
 }
 
 impl<R: Real> Frame<R> {
-    /// The frame of the ray `origin + t direction`, for a model about `centre`; `None` if a number is not finite, the
+    /// The frame of the ray `origin + t direction`, for what lies about `centre`; `None` if a number is not finite, the
     /// direction is zero, or the parameter of the point nearest to `centre` is beyond all numbers.
     pub(super) fn new(origin: [f64; 3], direction: [f64; 3], centre: [R; 3]) -> Option<Frame<R>> {
         let largest = direction.iter().fold(0.0, |m: f64, x| if x.abs() > m { x.abs() } else { m });
@@ -45,13 +49,6 @@ impl<R: Real> Frame<R> {
         let scaled = R::over(direction.map(R::new), R::new(largest));
         let along = unit(scaled);
         let length = dot(scaled, scaled).sqrt().times(largest);
-        let to_centre = [0, 1, 2].map(|k| centre[k] - R::new(origin[k]));
-        let distance = dot(to_centre, along);
-        let shift = distance / length;
-        let moved = [0, 1, 2].map(|k| shift.on_ray(origin[k], direction[k]));
-        if !(length.is_finite() && shift.is_finite() && moved.iter().all(|x| x.is_finite())) {
-            return None;
-        }
         let mut least = 0;
         for k in 1..3 {
             if along[k].abs() < along[least].abs() {
@@ -61,13 +58,35 @@ impl<R: Real> Frame<R> {
         let mut axis = [R::ZERO; 3];
         axis[least] = R::ONE;
         let first = unit(cross(axis, along));
-        Some(Frame {
+        let axes = [first, cross(along, first), along];
+        let ray = [origin, direction];
+        let unmoved =
+            Frame { ray, origin: origin.map(R::new), slip: 0.0, shift: R::ZERO, start: R::ZERO, length, axes };
+        unmoved.about(centre).map(|frame| Frame { start: R::ZERO, ..frame })
+    }
+
+    /// The same ray's frame for what lies about another `centre`; `None` as of [`Frame::new`].
+    ///
+    /// Of a small surface far from the middle of its model, points in the model's frame would be rounded to the model's size.
+    pub(super) fn about(&self, centre: [R; 3]) -> Option<Frame<R>> {
+        let [origin, direction] = self.ray;
+        let to_centre = [0, 1, 2].map(|k| centre[k] - R::new(origin[k]));
+        let distance = dot(to_centre, self.axes[2]);
+        let shift = distance / self.length;
+        let moved = [0, 1, 2].map(|k| shift.on_ray(origin[k], direction[k]));
+        let valid = self.length.is_finite() && shift.is_finite() && moved.iter().all(|x| x.is_finite());
+        valid.then(|| Frame {
             origin: moved,
             slip: R::SLIP * distance.to_f64().abs(),
             shift,
-            length,
-            axes: [first, cross(along, first), along],
+            start: (shift - self.shift) * self.length,
+            ..self.clone()
         })
+    }
+
+    /// The depth of the frame's origin in the frame that it was moved from.
+    pub(super) fn start(&self) -> R {
+        self.start
     }
 
     /// The ray's unit direction in the model's coordinates.

@@ -11,6 +11,7 @@ mod edges;
 mod exclusion;
 mod frame;
 mod injectivity;
+mod nearness;
 mod net;
 mod real;
 mod root;
@@ -19,6 +20,7 @@ mod surface;
 use crate::scene::model::{Model, ModelSurface};
 use edges::{EDGES, Edges};
 use frame::Frame;
+pub use nearness::is_farther;
 use net::Degrees;
 pub use real::{DoubleDouble, Real};
 use root::Found;
@@ -35,13 +37,15 @@ pub struct Root {
     pub v: f64,
     /// The surface's number in the model, from 0. Where several surfaces meet, one of them.
     pub surface: usize,
-    /// How far, to first order, the ray may move sideways before this root ends, in units of the model's diagonal, at
-    /// most 1: an estimate, the least of the distance to the silhouette, c² / 2κ (c the cosine between ray and normal, κ the normal
+    /// How far, to first order, the ray may move sideways before this root ends, as a share of `unit`, at most 1: an estimate, the least of the distance to the silhouette, c² / 2κ (c the cosine between ray and normal, κ the normal
     /// curvature along the tangent nearest to the ray), and the distances, as the ray sees them, to those edges of its
     /// surface where no other surface carries on. 0 where there is no normal.
     pub margin: f64,
-    /// How far the root may be off along the ray by rounding, in units of the model's diagonal.
+    /// How far the root may be off along the ray by rounding, as a share of `unit`.
     pub blur: f64,
+    /// The length that margin and blur are shares of: the model's diagonal, or what [`OracleIn::measured_by`] was told of the
+    /// surface; where surfaces coincide, the largest of theirs.
+    pub unit: f64,
     /// The cosine of the angle between ray and normal, at least 0; 0 where there is no normal.
     pub cosine: f64,
 }
@@ -55,10 +59,10 @@ pub struct Verdict {
     /// found from either side; one on surfaces that coincide; one at a pole.
     pub roots: Vec<Root>,
     /// How safe the answer "this is the closest hit" or "there is none" is: how far the ray may be displaced, to first
-    /// order and in units of the model's diagonal, before the answer may change in kind. The least of
+    /// order and as a share of the unit of the surface concerned, before the answer may change in kind. The least of
     /// - the closest root's own margin;
     /// - how far the ray must move before the second root is as close: the difference in depth, divided by the sum of
-    ///   both roots' slopes where that exceeds 1;
+    ///   both roots' slopes where that exceeds 1, as a share of the larger of their units;
     /// - how far it must move before a root outside the range of t comes into it, or the closest one leaves it: the distance
     ///   along the ray, divided by the root's slope where that exceeds 1;
     /// - the clearances of all parts of the surfaces, no farther away than the closest root, that hold no root but would
@@ -88,6 +92,8 @@ pub struct OracleIn<R> {
     edges: Edges<R>,
     centre: [R; 3],
     diagonal: f64,
+    /// Domains examined per ray and surface at most.
+    domains: usize,
     /// Surfaces that no ray can be judged against.
     invalid: usize,
 }
@@ -125,10 +131,23 @@ impl<R: Real> OracleIn<R> {
     /// Makes `model` ready. A surface with degrees outside 1 to 15, too few or too many points, a coordinate beyond
     /// ±1e100 or a weight outside 1e-100 to 1e100 is invalid: it is left out and counted in every verdict as unresolved.
     pub fn new(model: &Model) -> OracleIn<R> {
+        Self::with(model, None)
+    }
+
+    /// The same, with margins measured in each surface's own unit, a length above 0: what is a hair's breadth to the model may
+    /// be all of a small surface.
+    pub fn measured_by(model: &Model, unit: impl Fn(&ModelSurface) -> f64) -> OracleIn<R> {
+        Self::with(model, Some(&unit))
+    }
+
+    fn with(model: &Model, unit: Option<&dyn Fn(&ModelSurface) -> f64>) -> OracleIn<R> {
         let valid: Vec<(usize, &ModelSurface)> =
             model.surfaces.iter().enumerate().filter(|(_, s)| is_valid(s)).collect();
         let all = bounds(valid.iter().flat_map(|(_, s)| &s.points));
-        let largest = all.iter().flatten().fold(0.0, |m, x| if x.abs() > m { x.abs() } else { m });
+        let [low, high] = all;
+        let diagonal = [0, 1, 2].map(|k| (high[k] - low[k]).powi(2)).iter().sum::<f64>().sqrt();
+        // A model that is a single point has no extent to measure by.
+        let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
         let mut surfaces = Vec::new();
         for (place, (number, surface)) in valid.iter().enumerate() {
             let heaviest = surface.points.iter().fold(0.0, |m, p| f64::max(m, p[3]));
@@ -142,60 +161,73 @@ impl<R: Real> OracleIn<R> {
                 points,
                 centre,
                 half,
+                unit: unit.map_or(diagonal, |unit| unit(surface)),
             });
         }
         let nets = surfaces.iter().map(|s| (s.degrees, &s.points[..]));
-        let edges = Edges::new(nets, 4.0 * R::EPS * largest);
-        let [low, high] = all;
-        let diagonal = [0, 1, 2].map(|k| (high[k] - low[k]).powi(2)).iter().sum::<f64>().sqrt();
+        let edges = Edges::new(nets, 4.0 * R::EPS);
         OracleIn {
             invalid: model.surfaces.len() - surfaces.len(),
             centre: if surfaces.is_empty() { [R::ZERO; 3] } else { middle(all)[0] },
-            // A model that is a single point has no extent to measure by.
-            diagonal: if diagonal > 0.0 { diagonal } else { 1.0 },
+            diagonal,
+            domains: surface::MAX_DOMAINS,
             surfaces,
             edges,
         }
     }
 
+    /// The same with another bound on domains per surface, for those who ask much and can do without rays that lie along one.
+    pub fn within(self, domains: usize) -> OracleIn<R> {
+        OracleIn { domains, ..self }
+    }
+
+    /// The length in units of which verdicts are stated.
+    pub fn diagonal(&self) -> f64 {
+        self.diagonal
+    }
+
     /// All roots of the ray `origin + t direction` with `t_min <= t <= t_max`, which may be infinite. The direction may
-    /// have any length. Work is bounded: 20,000 domains per surface.
+    /// have any length. Work is bounded: 20,000 domains per surface, or [`OracleIn::within`] so many.
     pub fn trace(&self, origin: [f64; 3], direction: [f64; 3], t_min: f64, t_max: f64) -> Verdict {
         let frame = Frame::new(origin, direction, self.centre);
         let Some(frame) = frame.filter(|_| !t_min.is_nan() && !t_max.is_nan()) else {
             return Verdict { roots: Vec::new(), margin: 0.0, unresolved: 1 };
         };
-        let ray = Ray {
-            frame: &frame,
-            edges: &self.edges,
-            range: [t_min, t_max].map(|t| frame.depth(t)),
-            diagonal: self.diagonal,
-        };
         let mut findings = Findings::new();
         for surface in &self.surfaces {
+            let Some(frame) = frame.about(surface.centre) else {
+                findings.unresolved.push(-R::INFINITY);
+                continue;
+            };
+            let range = [t_min, t_max].map(|t| frame.depth(t));
+            let ray = Ray { frame: &frame, edges: &self.edges, range, diagonal: self.diagonal, domains: self.domains };
             ray.search(surface, &mut findings);
         }
-        self.judge(&frame, findings, [t_min, t_max], ray.range)
+        let range = [t_min, t_max].map(|t| frame.depth(t));
+        self.judge(findings, [t_min, t_max], range)
     }
 
     /// The verdict on what was found.
-    fn judge(&self, frame: &Frame<R>, mut findings: Findings<R>, times: [f64; 2], range: [R; 2]) -> Verdict {
+    fn judge(&self, mut findings: Findings<R>, times: [f64; 2], range: [R; 2]) -> Verdict {
         let times = times.map(R::new);
         findings.roots.sort_by(|a, b| a.depth.order(&b.depth));
         let mut merged: Vec<Found<R>> = Vec::new();
         for root in findings.roots {
             match merged.last_mut() {
                 Some(last) if root.depth.less(last.depth) <= last.blur + root.blur => {
+                    let unit = f64::max(last.unit, root.unit);
                     if root.margin > last.margin {
                         *last = root;
                     }
+                    last.unit = unit;
                 }
                 _ => merged.push(root),
             }
         }
 
-        let mut margin = self.diagonal;
-        let mut limit = |x: f64| {
+        let mut margin = 1.0;
+        let mut limit = |length: f64, unit: f64| {
+            let x = length / unit;
             // NaN limits to 0: what cannot be computed is not safe.
             if x.is_nan() || x < margin {
                 margin = if x > 0.0 { x } else { 0.0 };
@@ -203,8 +235,7 @@ impl<R: Real> OracleIn<R> {
         };
         let mut inside = Vec::new();
         for root in &merged {
-            let t = frame.parameter(root.depth);
-            if t >= times[0] && t <= times[1] {
+            if root.t >= times[0] && root.t <= times[1] {
                 inside.push(*root);
             }
         }
@@ -215,44 +246,41 @@ impl<R: Real> OracleIn<R> {
         let deepest = inside.first().map_or(range[1], |r| r.depth + R::new(r.blur));
         for root in &merged {
             let near = root.depth <= deepest || inside.is_empty();
-            let t = frame.parameter(root.depth);
-            if near && t < times[0] {
-                limit(carried(range[0].less(root.depth), slope(root)));
-            } else if near && t > times[1] {
-                limit(carried(root.depth.less(range[1]), slope(root)));
+            if near && root.t < times[0] {
+                limit(carried(range[0].less(root.depth), slope(root)), root.unit);
+            } else if near && root.t > times[1] {
+                limit(carried(root.depth.less(range[1]), slope(root)), root.unit);
             }
         }
         if let Some(closest) = inside.first() {
-            limit(closest.margin);
-            limit(carried(closest.depth.less(range[0]), slope(closest)));
-            limit(carried(range[1].less(closest.depth), slope(closest)));
+            limit(closest.margin, closest.unit);
+            limit(carried(closest.depth.less(range[0]), slope(closest)), closest.unit);
+            limit(carried(range[1].less(closest.depth), slope(closest)), closest.unit);
         }
         if let [closest, second, ..] = &inside[..] {
-            limit(carried(second.depth.less(closest.depth), slope(closest) + slope(second)));
+            let unit = f64::max(closest.unit, second.unit);
+            limit(carried(second.depth.less(closest.depth), slope(closest) + slope(second)), unit);
         }
         for clearance in &findings.clearances {
             if clearance.depth <= deepest || inside.is_empty() {
-                limit(clearance.gap);
+                limit(clearance.gap, clearance.unit);
             }
         }
         if self.invalid > 0 || findings.unresolved.iter().any(|&d| d <= deepest || inside.is_empty()) {
-            limit(0.0);
+            limit(0.0, 1.0);
         }
 
         let roots = inside.iter().map(|r| Root {
-            t: frame.parameter(r.depth).to_f64(),
+            t: r.t.to_f64(),
             u: r.uv[0].to_f64(),
             v: r.uv[1].to_f64(),
             surface: r.surface,
-            margin: r.margin / self.diagonal,
-            blur: r.blur / self.diagonal,
+            margin: f64::min(r.margin / r.unit, 1.0),
+            blur: r.blur / r.unit,
+            unit: r.unit,
             cosine: r.cosine,
         });
-        Verdict {
-            roots: roots.collect(),
-            margin: margin / self.diagonal,
-            unresolved: findings.unresolved.len() + self.invalid,
-        }
+        Verdict { roots: roots.collect(), margin, unresolved: findings.unresolved.len() + self.invalid }
     }
 }
 

@@ -7,29 +7,36 @@ use super::contraction::Domain;
 use super::edges::EDGES;
 use super::net::{Degrees, Point, surface_jet};
 use super::real::Real;
-use super::surface::{Ray, Surface, norm};
+use super::surface::{Chart, Ray, Surface, norm};
 
 /// A root of one surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found<R> {
     pub(super) surface: usize,
     pub(super) uv: [R; 2],
+    /// The ray's parameter.
+    pub(super) t: R,
+    /// The depth in the model's frame.
     pub(super) depth: R,
     /// How far `depth` may be off by rounding.
     pub(super) blur: f64,
+    /// How far apart in space neighbouring parameters of its chart are there.
+    pub(super) fineness: f64,
     /// The cosine of the angle between ray and normal; 0 if there is no normal.
     pub(super) cosine: f64,
     /// How far the ray may move sideways before this root ends, in lengths: see [`super::Root::margin`].
     pub(super) margin: f64,
+    /// The unit of its surface; of a root on several the largest.
+    pub(super) unit: f64,
 }
 
 impl<R: Real> Ray<'_, R> {
-    /// The root at `uv`, with its margin; `error` bounds the error of an evaluation, per unit of weight.
-    pub(super) fn measure(&self, surface: &Surface<R>, net: &[Point<R>], uv: [R; 2], error: f64) -> Found<R> {
-        let jet = surface_jet(surface.degrees, net, uv[0], uv[1]);
+    /// The root at the parameters `x` of the chart's net, with its margin.
+    pub(super) fn measure(&self, surface: &Surface<R>, chart: &Chart<R>, x: [R; 2]) -> Found<R> {
+        let jet = surface_jet(surface.degrees, chart.net, x[0], x[1]);
+        let uv = chart.covers.at(x);
         let w = jet.point[3];
-        let [x, y, z, _] = jet.point;
-        let point = R::over([x, y, z], w);
+        let point = R::over([jet.point[0], jet.point[1], jet.point[2]], w);
         // The quotient rule, for the first derivatives and then for the second.
         let first = jet.first.map(|d| R::over([0, 1, 2].map(|k| d[k] - d[3] * point[k]), w));
         let second = [(0, 0), (0, 1), (1, 1)].map(|(a, b)| {
@@ -43,6 +50,7 @@ impl<R: Real> Ray<'_, R> {
         // Of the angles and curvatures made of these, rounding takes no more digits than it takes of them.
         let normal = normal.map(R::to_f64);
         let [a, b] = first.map(|d| d.map(R::to_f64));
+        let fineness = R::EPS * (norm(a) * x[0].abs().to_f64() + norm(b) * x[1].abs().to_f64());
         let area = norm(normal);
         let cosine = if area > 0.0 { normal[2].abs() / area } else { 0.0 };
 
@@ -69,12 +77,20 @@ impl<R: Real> Ray<'_, R> {
             margin = fold;
         }
 
-        // The borders, by the parallelogram of the first derivatives as the ray sees it.
+        // The borders, by the parallelogram of the first derivatives as the ray sees it. How far they are is told from the
+        // end that they are at: near 1 the parameter itself is too coarse.
+        let Domain { corner, size } = chart.covers;
+        let run = |across: usize, end: usize| {
+            let run = match end {
+                0 => corner[across] + x[across].times(size[across]),
+                _ => (R::ONE - corner[across] - R::new(size[across])) + (R::ONE - x[across]).times(size[across]),
+            };
+            run.abs().to_f64() / size[across]
+        };
         for edge in 0..EDGES {
             let (across, along) = (edge / 2, 1 - edge / 2);
             let rim = [a, b][along];
-            let run = (uv[across] - R::new((edge % 2) as f64)).abs().to_f64();
-            let distance = run * normal[2].abs() / (rim[0] * rim[0] + rim[1] * rim[1]).sqrt();
+            let distance = run(across, edge % 2) * normal[2].abs() / (rim[0] * rim[0] + rim[1] * rim[1]).sqrt();
             if distance < margin && !self.edges.continues(surface.first_edge + edge, uv[along], self.frame.direction())
             {
                 margin = distance;
@@ -83,10 +99,14 @@ impl<R: Real> Ray<'_, R> {
         Found {
             surface: surface.number,
             uv: uv.map(R::clamp_unit),
-            depth: point[2],
-            blur: 4.0 * error / f64::max(cosine, least_cosine::<R>()),
+            t: self.frame.parameter(point[2]),
+            depth: self.frame.start() + point[2],
+            blur: 4.0 * (f64::max(chart.error, chart.blur) + fineness) / f64::max(cosine, least_cosine::<R>())
+                + R::EPS * self.frame.start().abs().to_f64(),
+            fineness,
             cosine,
             margin,
+            unit: surface.unit,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The answers to a batch of rays, as CSV.
 //!
 //! The header is `ray,hit,t,u,v,patch,nx,ny,nz,status`; then a line per ray, in order. `ray` is its number from 0, `hit` is
-//! 1 for the statuses `ok` and `graze` and 0 for `miss`, `gave-up:LIMIT` and `invalid`. Numbers are the shortest text that
+//! 1 for the statuses `ok`, `graze` and `contact` and 0 for `miss`, `gave-up:LIMIT` and `invalid`. Numbers are the shortest text that
 //! reads back to the same bits in the precision they were computed in. Without a hit they are empty, except that a ray that
 //! was given up has the best so far, which is not an answer.
 //!
@@ -23,7 +23,7 @@ pub struct Found<S> {
     pub v: S,
     /// The number of the surface in its patch file, or in the scene, from 0.
     pub patch: usize,
-    /// The normal there; `None`, which leaves its fields empty, where there is none, as on a collapsed edge.
+    /// The normal there; `None`, which leaves its fields empty, where there is none, as at the apex of a cone.
     pub normal: Option<[S; 3]>,
 }
 
@@ -34,6 +34,8 @@ pub enum Answer<'a, S> {
     Hit(Found<S>),
     /// A hit, where the ray grazes the surface: status `graze`.
     Graze(Found<S>),
+    /// A hit, where a stretch begins on which the ray lies in the surface: status `contact`.
+    Contact(Found<S>),
     /// No hit: status `miss`.
     Miss,
     /// Out of budget: status `gave-up:` with the name of the limit.
@@ -49,12 +51,12 @@ pub enum Answer<'a, S> {
 
 impl<S> Answer<'_, S> {
     fn is_hit(&self) -> bool {
-        matches!(self, Self::Hit(_) | Self::Graze(_))
+        matches!(self, Self::Hit(_) | Self::Graze(_) | Self::Contact(_))
     }
 
     fn found(&self) -> Option<&Found<S>> {
         match self {
-            Self::Hit(found) | Self::Graze(found) => Some(found),
+            Self::Hit(found) | Self::Graze(found) | Self::Contact(found) => Some(found),
             Self::GaveUp { best, .. } => best.as_ref(),
             Self::Miss | Self::Invalid => None,
         }
@@ -64,6 +66,7 @@ impl<S> Answer<'_, S> {
         match self {
             Self::Hit(_) => ("ok", ""),
             Self::Graze(_) => ("graze", ""),
+            Self::Contact(_) => ("contact", ""),
             Self::Miss => ("miss", ""),
             Self::GaveUp { limit, .. } => ("gave-up:", limit),
             Self::Invalid => ("invalid", ""),
@@ -187,6 +190,7 @@ mod tests {
         let answers = [
             Answer::Hit(Found { normal: Some([-0.0, 1e300, 0.1]), ..found }),
             Answer::Graze(found),
+            Answer::Contact(found),
             Answer::Miss,
             Answer::GaveUp { limit: "clip-steps", best: None },
             Answer::GaveUp { limit: "voxels", best: Some(found) },
@@ -195,10 +199,11 @@ mod tests {
         let expected = [
             "0,1,1.5e-9,0.25,1,31,-0,1e300,0.1,ok",
             "1,1,1.5e-9,0.25,1,31,,,,graze",
-            "2,0,,,,,,,,miss",
-            "3,0,,,,,,,,gave-up:clip-steps",
-            "4,0,1.5e-9,0.25,1,31,,,,gave-up:voxels",
-            "5,0,,,,,,,,invalid",
+            "2,1,1.5e-9,0.25,1,31,,,,contact",
+            "3,0,,,,,,,,miss",
+            "4,0,,,,,,,,gave-up:clip-steps",
+            "5,0,1.5e-9,0.25,1,31,,,,gave-up:voxels",
+            "6,0,,,,,,,,invalid",
         ];
         assert_eq!(lines(&answers), expected);
     }

@@ -57,6 +57,63 @@ fn blocks_and_threads_change_nothing() {
     }
 }
 
+/// Minus infinity and infinity are bounds of t like others, and no t is infinite.
+#[test]
+fn rays_may_be_whole_lines_or_have_one_end() {
+    let infinity = f64::INFINITY;
+    let ended = |from: f64, to: f64| {
+        let mut rays = rays(300);
+        for ray in &mut rays {
+            // From within the teapot, so that it is met on both sides.
+            ray.origin = [0, 1, 2].map(|axis| ray.origin[axis] + ray.direction[axis]);
+            (ray.t_min, ray.t_max, ray.valid) = (from, to, true);
+        }
+        rays
+    };
+    for &method in Which::value_variants().iter().filter(|method| !method.needs_view()) {
+        for precision in [Precision::F32, Precision::F64] {
+            let settings = Settings { method, precision, flatness: 0.005, ..Settings::default() };
+            let answers = |from, to| traced(&settings, &ended(from, to), 300).0;
+            let whole = answers(-infinity, infinity);
+            let t = |outcome: &Outcome| match outcome {
+                Outcome::Hit(found) => Some(found.t),
+                _ => None,
+            };
+            let behind = whole.iter().filter_map(t).filter(|t| *t < 0.0).count();
+            assert!(behind > 100, "{method:?} {precision:?}: {behind}");
+            assert_eq!(whole, answers(-1e6, 1e6), "{method:?} {precision:?}");
+            assert_eq!(answers(-infinity, 0.0), answers(-1e6, 0.0), "{method:?} {precision:?}");
+            assert_eq!(answers(0.0, infinity), answers(0.0, 1e6), "{method:?} {precision:?}");
+            for end in [-infinity, infinity] {
+                assert!(answers(end, end).iter().all(|outcome| *outcome == Outcome::Miss), "{method:?} {precision:?}");
+            }
+        }
+    }
+}
+
+/// Where there is no normal pictures show one of a place nearby; of a surface that has none anywhere there is none to show.
+#[test]
+fn a_hit_without_a_normal_shows_one_nearby() {
+    let near = |surface| {
+        let model = crate::scene::shapes::single(surface);
+        let Ok(Prepared::PlainF64(lowered)) = Prepared::build(&model, Stages::NONE, &Settings::default()) else {
+            panic!("it is polynomial")
+        };
+        let hit = Hit { t: 1.0, u: 0.0, v: 0.25, surface: 0, incidence: Default::default() };
+        found(&lowered.scene(), &mut Basis::new(), &hit).normal
+    };
+    // Three sides of a pyramid's edge as rows about its tip.
+    let pointed = crate::scene::shapes::net(1, 2, |i, j| [(i * j) as f64, (i * j * j) as f64, i as f64]);
+    let shown = near(pointed);
+    assert!(matches!(shown, Normal::Nearby(_)) && shown.there().is_none(), "{shown:?}");
+    let length: f64 = shown.shown().expect("it is near").iter().map(|c| c * c).sum();
+    assert!((length - 1.0).abs() < 1e-12);
+    let curve = crate::scene::shapes::net(1, 2, |_, j| [j as f64, (j * j) as f64, 0.0]);
+    assert_eq!(near(curve), Normal::Nowhere);
+    let flat = crate::scene::shapes::net(1, 1, |i, j| [i as f64, (i * j) as f64, 0.0]);
+    assert_eq!(near(flat).there().map(|[x, y, z]| [x, y, z.abs()]), Some([0.0, 0.0, 1.0]));
+}
+
 #[test]
 fn coherence_stays_within_a_line() {
     let mut rays = rays(200);

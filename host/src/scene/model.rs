@@ -73,16 +73,7 @@ impl Model {
 
     /// The smallest box around all control points; `None` without any.
     pub fn control_box(&self) -> Option<ControlBox> {
-        let mut points = self.surfaces.iter().flat_map(|surface| &surface.points);
-        let &[x, y, z, _] = points.next()?;
-        let mut control_box = ControlBox { min: [x, y, z], max: [x, y, z] };
-        for point in points {
-            for axis in 0..3 {
-                control_box.min[axis] = control_box.min[axis].min(point[axis]);
-                control_box.max[axis] = control_box.max[axis].max(point[axis]);
-            }
-        }
-        Some(control_box)
+        ControlBox::around(self.surfaces.iter().flat_map(|surface| &surface.points))
     }
 }
 
@@ -97,6 +88,20 @@ pub struct ControlBox {
 }
 
 impl ControlBox {
+    /// The smallest box around these points; `None` without any.
+    pub fn around<'p>(points: impl IntoIterator<Item = &'p [f64; 4]>) -> Option<ControlBox> {
+        let mut points = points.into_iter();
+        let &[x, y, z, _] = points.next()?;
+        let mut control_box = ControlBox { min: [x, y, z], max: [x, y, z] };
+        for point in points {
+            for axis in 0..3 {
+                control_box.min[axis] = control_box.min[axis].min(point[axis]);
+                control_box.max[axis] = control_box.max[axis].max(point[axis]);
+            }
+        }
+        Some(control_box)
+    }
+
     /// The length of the diagonal.
     pub fn diagonal(&self) -> f64 {
         let [dx, dy, dz] = [0, 1, 2].map(|axis| self.max[axis] - self.min[axis]);

@@ -1,16 +1,16 @@
 //! Ray batches: CSV files with a ray a line.
 //!
 //! The header names the columns, in any order: `ox,oy,oz` the origin and `dx,dy,dz` the direction; optionally `tmin` and
-//! `tmax`, the range of t that counts (0 and infinity without them; `tmax` may be `inf`), and `line`, the number of the
-//! scan line, a whole number (without it the file is one scan line). A ray is origin + t · direction; the direction is not
-//! normalised, and t is in units of it.
+//! `tmax`, the range of t that counts (0 and infinity without them, or where their field is empty; `-inf` and `inf` are a
+//! whole line), and `line`, the number of the scan line, a whole number (without it the file is one scan line). A ray is
+//! origin + t · direction; the direction is not normalised, and t is in units of it.
 //!
 //! ```
 //! use patchray_host::scene::{error::OnInvalid, rays};
-//! let text = "ox,oy,oz,dx,dy,dz,tmax\n0,0,5,0,0,-2,inf\n";
+//! let text = "ox,oy,oz,dx,dy,dz,tmin,tmax\n0,0,5,0,0,-2,-inf,\n";
 //! let batch = rays::parse("rays.csv", text, OnInvalid::Refuse)?;
 //! assert_eq!(batch.rays[0].direction, [0.0, 0.0, -2.0]);
-//! assert_eq!(batch.rays[0].t_max, f64::INFINITY);
+//! assert_eq!((batch.rays[0].t_min, batch.rays[0].t_max), (f64::NEG_INFINITY, f64::INFINITY));
 //! # Ok::<(), patchray_host::scene::error::InputError>(())
 //! ```
 use std::fs::File;
@@ -33,9 +33,9 @@ pub struct RayLine {
     pub origin: [f64; 3],
     /// The way of the ray for t from 0 to 1; not normalised.
     pub direction: [f64; 3],
-    /// The smallest t that counts; finite, may be negative.
+    /// The smallest t that counts; may be negative, and minus infinity.
     pub t_min: f64,
-    /// The largest t that counts; may be infinite.
+    /// The largest t that counts; may be infinity.
     pub t_max: f64,
     /// The number of the scan line: coherence is carried between consecutive rays with the same one.
     pub scan_line: u64,
@@ -300,9 +300,10 @@ fn ray(record: &StringRecord, columns: &Columns, fields: usize) -> Result<RayLin
             help: "write a number for every column of the header, with commas between them".to_owned(),
         });
     }
-    let number = |column: usize, default: f64| match columns[column] {
-        None => Ok(default),
-        Some(field) => record[field].trim().parse::<f64>().map_err(|_| Fault {
+    let number = |column: usize, default: Option<f64>| match (columns[column], default) {
+        (None, default) => Ok(default.unwrap_or_default()),
+        (Some(field), Some(default)) if record[field].trim().is_empty() => Ok(default),
+        (Some(field), _) => record[field].trim().parse::<f64>().map_err(|_| Fault {
             at: At::Field(field),
             message: not_a("number", &record[field], column),
             help: "write a decimal number, such as `-1.5` or `2e-3`".to_owned(),
@@ -317,10 +318,10 @@ fn ray(record: &StringRecord, columns: &Columns, fields: usize) -> Result<RayLin
         })?,
     };
     Ok(RayLine {
-        origin: [number(0, 0.0)?, number(1, 0.0)?, number(2, 0.0)?],
-        direction: [number(3, 0.0)?, number(4, 0.0)?, number(5, 0.0)?],
-        t_min: number(T_MIN, 0.0)?,
-        t_max: number(T_MAX, f64::INFINITY)?,
+        origin: [number(0, None)?, number(1, None)?, number(2, None)?],
+        direction: [number(3, None)?, number(4, None)?, number(5, None)?],
+        t_min: number(T_MIN, Some(0.0))?,
+        t_max: number(T_MAX, Some(f64::INFINITY))?,
         scan_line,
         valid: true,
     })
@@ -350,12 +351,9 @@ fn invalid(record: &StringRecord, columns: &Columns, ray: &RayLine) -> Option<Fa
             let help = "use smaller units: at most 1.7e308";
             return fault(field(column), format!("`{name}` is too large for a 64-bit floating point number"), help);
         }
-        if value.is_infinite() && column != T_MAX {
-            return fault(
-                field(column),
-                format!("`{name}` is infinite"),
-                "write a finite number; only `tmax` may be `inf`",
-            );
+        if value.is_infinite() && ![T_MIN, T_MAX].contains(&column) {
+            let help = "write a finite number; only `tmin` may be `-inf`, and `tmax` `inf`";
+            return fault(field(column), format!("`{name}` is infinite"), help);
         }
     }
     if ray.direction == [0.0; 3] {
@@ -365,6 +363,13 @@ fn invalid(record: &StringRecord, columns: &Columns, ray: &RayLine) -> Option<Fa
         let at = if columns[T_MAX].is_some() { field(T_MAX) } else { field(T_MIN) };
         let message = format!("`tmin` is {} and above `tmax`, which is {}", ray.t_min, ray.t_max);
         return fault(at, message, "write a range of t with `tmin` at most `tmax`");
+    }
+    // No t is infinite, so that such a range is empty although its ends are in order.
+    for (column, value, none) in [(T_MIN, ray.t_min, f64::INFINITY), (T_MAX, ray.t_max, f64::NEG_INFINITY)] {
+        if value == none {
+            let message = format!("`{}` is {none}, which leaves no t", NAMES[column]);
+            return fault(field(column), message, "write a range of t; `-inf` to `inf` is a whole line");
+        }
     }
     None
 }

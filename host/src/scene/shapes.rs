@@ -7,6 +7,7 @@ use super::model::{Model, ModelSurface};
 use super::revolution::{Arcs, Curve, revolve};
 
 pub mod roots;
+pub mod weights;
 
 /// Pseudo-random numbers: SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number
 /// generators", 2014). The same seed gives the same numbers everywhere.

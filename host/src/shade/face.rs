@@ -152,7 +152,7 @@ impl Face {
         let [_, right, up] = self.axes;
         let (across, steepest) = (self.texel_slope(), STEEPEST * self.texel_slope() * inverse);
         let slope = |along: [f64; 3], half: f64| {
-            let normal = found.normal.unwrap_or([0.0; 3]);
+            let normal = found.normal.there().unwrap_or([0.0; 3]);
             // Of a plane the depths t along directions d have the same n · d t.
             let slope = inverse * dot(normal, along) * 2.0 * half / f64::from(self.size) / dot(normal, direction);
             if slope.is_nan() || across == 0.0 { 0.0 } else { slope.clamp(-steepest, steepest) }

@@ -58,6 +58,7 @@ struct Met {
     point: [f64; 3],
     /// The distance along the ray, in units of its direction.
     t: f64,
+    /// `None` where none can be shown.
     normal: Option<[f64; 3]>,
     material: usize,
 }
@@ -155,7 +156,7 @@ impl<'s, B: Basis<N>, const N: usize> Painter<'s, B, N> {
         let mut met = match outcome {
             Outcome::Hit(found) => {
                 let material = self.appearance.surfaces.get(found.surface).copied().unwrap_or(0);
-                Some(Met { point: [0.0; 3], t: found.t, normal: found.normal, material })
+                Some(Met { point: [0.0; 3], t: found.t, normal: found.normal.shown(), material })
             }
             Outcome::Miss => None,
             Outcome::GaveUp { .. } | Outcome::Refused(_) | Outcome::Invalid => return Seen::GaveUp,
@@ -210,10 +211,12 @@ fn reflected(ray: &RayLine, met: &Met) -> Option<RayLine> {
 
 #[cfg(test)]
 mod tests {
+    use patchray::ray::Incidence;
+
     use super::super::shadows::NO_SHADOWS;
     use super::super::spectrum::{Rgb, Sampled};
     use super::*;
-    use crate::scanline::Found;
+    use crate::scanline::{Found, Normal};
     use crate::scene::appearance::Metal;
     use crate::scene::light::{Light, Shadow};
     use crate::scene::model::Model;
@@ -264,7 +267,14 @@ mod tests {
     }
 
     fn surface(t: f64) -> Outcome {
-        Outcome::Hit(Found { t, u: 0.5, v: 0.5, surface: 0, normal: Some([0.0, 0.0, 1.0]), grazing: false })
+        Outcome::Hit(Found {
+            t,
+            u: 0.5,
+            v: 0.5,
+            surface: 0,
+            normal: Normal::There([0.0, 0.0, 1.0]),
+            incidence: Incidence::Crossing,
+        })
     }
 
     #[test]
@@ -363,8 +373,8 @@ mod tests {
                 u: 0.5,
                 v: 0.5,
                 surface: 0,
-                normal: Some([1.0, 0.0, 0.0]),
-                grazing: false,
+                normal: Normal::There([1.0, 0.0, 0.0]),
+                incidence: Incidence::Crossing,
             });
             let again = basis.indices(kind).expect("samples have wavelengths").map(|index| index.reflectance(0.8));
             near(metal(kind, 1.0, upright), std::array::from_fn(|k| shares[k] * again[k]));

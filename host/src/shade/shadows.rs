@@ -222,6 +222,8 @@ impl<'s> Visibility<'s> {
 
 #[cfg(test)]
 mod tests {
+    use patchray::ray::Incidence;
+
     use super::*;
 
     /// A lane that answers every ray alike.
@@ -259,7 +261,14 @@ mod tests {
             let count = Count { rays: 1, gave_up: u64::from(share.is_none()) };
             assert_eq!(asked(&[], Some(&mut Answers(answer))), (vec![Some(1.0), share], count));
         }
-        let found = crate::scanline::Found { t: 0.5, u: 0.5, v: 0.5, surface: 0, normal: None, grazing: false };
+        let found = crate::scanline::Found {
+            t: 0.5,
+            u: 0.5,
+            v: 0.5,
+            surface: 0,
+            normal: crate::scanline::Normal::Nowhere,
+            incidence: Incidence::Crossing,
+        };
         assert_eq!(
             asked(&[], Some(&mut Answers(Outcome::Hit(found)))),
             (vec![Some(1.0), Some(0.0)], Count { rays: 1, gave_up: 0 })

@@ -107,6 +107,7 @@ pub fn broken(row: &Row, families: &[Family]) -> Vec<String> {
     if matches!(row.method, Method::Clipping) {
         say(score.lost(), "judged rays lost");
     }
+    say(score.gave_up_clear, "clear rays given up");
     say(score.beyond, "rays beyond the stated worst case");
     say(score.not_finite, "answers that are not finite");
     let grazing = families.iter().any(|family| family.name == row.family && family.grazing);
@@ -152,6 +153,7 @@ mod tests {
         assert_eq!(broken(&row(good.clone()), &families), [""; 0]);
         for bad in [
             Score { missed: 1, ..good.clone() },
+            Score { gave_up_clear: 1, ..good.clone() },
             Score { beyond: 1, ..good.clone() },
             Score { not_finite: 1, ..good.clone() },
             Score { unjudged: 31, ..good.clone() },

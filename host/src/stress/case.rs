@@ -1,5 +1,8 @@
 //! What a family is made of: cases, each a model with rays.
 
+use std::fmt;
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::judge::Truth;
@@ -30,7 +33,20 @@ pub struct Case {
     /// The rays.
     pub shot: Shot,
     /// The truth by a closed form, in place of the oracle's.
-    pub exact: Option<fn(&RayLine) -> Truth>,
+    pub exact: Option<Exact>,
+}
+
+/// A closed form: what is true of a ray, given the case's model in the numbers that the precision holds.
+#[derive(Clone)]
+pub struct Exact(pub Arc<Form>);
+
+/// See [`Exact`].
+pub type Form = dyn Fn(&Model, &RayLine) -> Truth + Send + Sync;
+
+impl fmt::Debug for Exact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Exact")
+    }
 }
 
 /// How a case is traced.
@@ -46,6 +62,15 @@ impl Case {
     /// Rays of no view, judged by the oracle.
     pub fn of_rays(model: Model, rays: Vec<RayLine>) -> Self {
         Case { model, shot: Shot::Rays(rays), exact: None }
+    }
+
+    /// Rays of no view, judged by a closed form.
+    pub fn of_form(
+        model: Model,
+        rays: Vec<RayLine>,
+        form: impl Fn(&Model, &RayLine) -> Truth + Send + Sync + 'static,
+    ) -> Self {
+        Case { exact: Some(Exact(Arc::new(form))), ..Case::of_rays(model, rays) }
     }
 }
 

@@ -14,8 +14,10 @@ pub struct Judge<'c> {
     pub(super) rays: &'c [RayLine],
     pub(super) truths: Vec<Truth>,
     precision: Precision,
-    /// The model's; of a model without extent its largest coordinate, or 1.
+    /// The model's; of a model without extent 1.
     diagonal: f64,
+    /// That of each surface.
+    sizes: Vec<f64>,
 }
 
 impl<'c> Judge<'c> {
@@ -27,7 +29,9 @@ impl<'c> Judge<'c> {
     /// By these truths, one for each ray.
     pub fn by(case: &'c Case, rays: &'c [RayLine], truths: Vec<Truth>, precision: Precision) -> Self {
         let diagonal = case.model.control_box().map_or(0.0, |bounds| bounds.diagonal());
-        Judge { case, rays, truths, precision, diagonal: if diagonal > 0.0 { diagonal } else { 1.0 } }
+        let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
+        let sizes = case.model.surfaces.iter().map(|surface| truth::size(surface, &case.model)).collect();
+        Judge { case, rays, truths, precision, diagonal, sizes }
     }
 
     /// What is true of a ray, by its place; `None` if there is no such ray.
@@ -35,28 +39,44 @@ impl<'c> Judge<'c> {
         self.truths.get(place)
     }
 
-    /// The model's diagonal, in which margins are measured.
+    /// The model's diagonal.
     pub fn diagonal(&self) -> f64 {
         self.diagonal
     }
 
+    /// The size of what a ray hits, in which margin and allowance are measured.
+    pub fn size(&self, truth: &Truth) -> f64 {
+        if truth.size > 0.0 { truth.size } else { self.diagonal }
+    }
+
+    /// The size of a surface.
+    pub(super) fn size_of(&self, surface: usize) -> f64 {
+        self.sizes.get(surface).copied().unwrap_or(self.diagonal)
+    }
+
     /// Whether an answer to the ray in this place is wrong, and the truth sure enough to say so. One that was given up, or
     /// refused, is not wrong; nor one that is off across the ray by no more than `blur`, a length: of a small model far from the
-    /// origin the tolerance, a share of its coordinates, is more than the allowance, a share of its diagonal.
+    /// origin the tolerance, a share of its coordinates, is more than the allowance, a share of its size.
     pub fn is_lost(&self, place: usize, outcome: &Outcome, blur: f64) -> bool {
         let (Some(truth), Some(ray)) = (self.truths.get(place), self.rays.get(place)) else {
             return false;
         };
         let Allowance { across, most } = self.allowance(truth, ray);
-        let allowance = Allowance { across: across.max(blur / self.diagonal), most };
+        let size = self.size(truth);
+        let allowance = Allowance { across: across.max(blur / size), most };
         let mut agreement = Agreement::default();
-        agreement.add(outcome, truth, ray.direction, self.diagonal, &allowance);
+        agreement.add(outcome, truth, ray.direction, size, &allowance);
         self.is_judged(truth) && agreement.wrong + agreement.missed + agreement.phantom > 0
     }
 
     /// Whether the truth of a ray is far enough from any other.
     pub(super) fn is_judged(&self, truth: &Truth) -> bool {
         !truth.open && truth.margin >= truth::least_margin(self.precision)
+    }
+
+    /// Whether it is so far from any other that there is no excuse for giving the ray up.
+    pub(super) fn is_clear(&self, truth: &Truth) -> bool {
+        !truth.open && truth.margin >= truth::clear_margin(self.precision)
     }
 
     /// The precision's unit of rounding.
@@ -67,23 +87,25 @@ impl<'c> Judge<'c> {
         }
     }
 
-    /// By how much, as a length, rounding t to the number type can move a point.
+    /// By how much, as a length, rounding can move a point of a ray: of t to the number type, and of the coordinates there.
     pub(super) fn slack(&self, t: f64, ray: &RayLine) -> f64 {
         let [x, y, z] = ray.direction;
-        4.0 * self.unit() * t.abs() * x.hypot(y).hypot(z)
+        let place = [0, 1, 2].map(|k| (ray.origin[k] + t * ray.direction[k]).abs());
+        let largest = place.into_iter().fold(0.0, f64::max);
+        self.unit() * (4.0 * t.abs() * x.hypot(y).hypot(z) + 16.0 * largest)
     }
 
-    /// How far a right answer may be off along a ray.
+    /// How far a right answer may be off along a ray, as shares of [`Judge::size`].
     pub fn allowance(&self, truth: &Truth, ray: &RayLine) -> Allowance {
         let Allowance { across, most } = allowance(self.precision);
-        let slack = truth.closest.map_or(0.0, |t| self.slack(t, ray)) / self.diagonal;
+        let slack = truth.closest.map_or(0.0, |t| self.slack(t, ray)) / self.size(truth);
         // Where three roots all but fall together, a third of the digits is all that rounding leaves.
         Allowance { across: across + slack, most: f64::max(most, self.unit().cbrt()) + slack }
     }
 
     pub(super) fn agreement(&self, outcome: &Outcome, truth: &Truth, ray: &RayLine) -> Agreement {
         let mut agreement = Agreement::default();
-        agreement.add(outcome, truth, ray.direction, self.diagonal, &self.allowance(truth, ray));
+        agreement.add(outcome, truth, ray.direction, self.size(truth), &self.allowance(truth, ray));
         agreement
     }
 
@@ -95,12 +117,12 @@ impl<'c> Judge<'c> {
             if !self.is_judged(truth) {
                 return false;
             }
-            let closest = match other {
-                Outcome::Hit(found) => Some(found.t),
-                Outcome::Miss => None,
+            let (closest, size) = match other {
+                Outcome::Hit(found) => (Some(found.t), self.size_of(found.surface)),
+                Outcome::Miss => (None, 0.0),
                 _ => return false,
             };
-            let other = Truth { closest, open: false, ..**truth };
+            let other = Truth { closest, open: false, size, ..**truth };
             let agreement = self.agreement(outcome, &other, ray);
             agreement.wrong + agreement.missed + agreement.phantom > 0
         });

@@ -6,6 +6,7 @@
 pub mod bounds;
 pub mod case;
 pub mod families;
+pub mod forms;
 pub mod judge;
 pub mod run;
 pub mod truth;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use patchray::limits::Work;
+use patchray::ray::Incidence;
 use serde::{Deserialize, Serialize};
 
 use super::case::{Case, Draw, Family, Shot};
@@ -37,12 +38,14 @@ pub struct Score {
     pub refused: u64,
     /// Given up, by limit; judged or not.
     pub gave_up: BTreeMap<String, u64>,
+    /// Given up, although clear: by [`truth::clear_margin`].
+    pub gave_up_clear: u64,
     /// Of a coherent method: judged rays that the original answers in another way.
     pub differ: Option<u64>,
     /// The same under the paper's rule of acceptance.
     pub differ_by_paper: Option<u64>,
-    /// The largest distance between the surface's point at a hit's (u, v) and the ray's at its t, as a share of the diagonal;
-    /// without grazing hits.
+    /// The largest distance between the surface's point at a hit's (u, v) and the ray's at its t, as a share of the surface's
+    /// size; of hits where the ray crosses the surface.
     pub residual: f64,
     /// The most Newton steps and clips that a ray took.
     pub steps: u64,
@@ -225,6 +228,7 @@ fn add(judge: &Judge, answers: &Answers, score: &mut Score) {
     for ((outcome, truth), ray) in answers.outcomes.iter().zip(&judge.truths).zip(judge.rays) {
         if let Outcome::GaveUp { limit, .. } = outcome {
             *score.gave_up.entry((*limit).to_owned()).or_default() += 1;
+            score.gave_up_clear += u64::from(judge.is_clear(truth));
             continue;
         }
         if let Outcome::Refused(_) | Outcome::Invalid = outcome {
@@ -238,10 +242,12 @@ fn add(judge: &Judge, answers: &Answers, score: &mut Score) {
         if let Outcome::Hit(found) = outcome {
             let numbers = [found.t, found.u, found.v];
             score.not_finite += u64::from(!numbers.iter().all(|x| x.is_finite()));
-            if let Some(surface) = judge.case.model.surfaces.get(found.surface).filter(|_| !found.grazing) {
+            if let Some(surface) =
+                judge.case.model.surfaces.get(found.surface).filter(|_| found.incidence == Incidence::Crossing)
+            {
                 // What t cannot say any better is no fault of the answer.
                 let off = truth::residual(surface, ray, found) - judge.slack(found.t, ray);
-                score.residual = score.residual.max(off / judge.diagonal());
+                score.residual = score.residual.max(off / judge.size_of(found.surface));
             }
         }
         if !judge.is_judged(truth) {

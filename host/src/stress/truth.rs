@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::case::{Case, Shot};
+use super::case::{Case, Exact, Shot};
 use crate::judge::Truth;
 use crate::oracle::{DoubleDouble, OracleIn, Real};
 use crate::scanline::{Found, row};
-use crate::scene::model::{Model, ModelSurface};
+use crate::scene::model::{ControlBox, Model, ModelSurface};
 use crate::scene::rays::RayLine;
 use crate::scene::trace::Precision;
 
@@ -39,7 +39,7 @@ pub fn in_precision(case: &Case, precision: Precision) -> Case {
         ),
         Shot::Picture(view) => Shot::Picture(*view),
     };
-    Case { model: Model { surfaces: surfaces.collect() }, shot, exact: case.exact }
+    Case { model: Model { surfaces: surfaces.collect() }, shot, exact: case.exact.clone() }
 }
 
 /// The rays of a case, in order.
@@ -52,10 +52,10 @@ pub fn rays_of(case: &Case) -> Vec<RayLine> {
 
 /// What is true of each ray of a case, on rayon's current threads.
 pub fn of_case(case: &Case, rays: &[RayLine]) -> Vec<Truth> {
-    if let Some(exact) = case.exact {
-        return rays.iter().map(exact).collect();
+    if let Some(Exact(exact)) = &case.exact {
+        return rays.iter().map(|ray| exact(&case.model, ray)).collect();
     }
-    let oracle = OracleIn::<DoubleDouble>::new(&case.model);
+    let oracle = OracleIn::<DoubleDouble>::measured_by(&case.model, |surface| size(surface, &case.model));
     rays.par_iter().map(|ray| Truth::from(&oracle.trace(ray.origin, ray.direction, ray.t_min, ray.t_max))).collect()
 }
 
@@ -64,11 +64,27 @@ pub fn is_no_ray(ray: &RayLine) -> bool {
     !ray.origin.iter().chain(&ray.direction).all(|x| x.is_finite()) || ray.direction == [0.0; 3]
 }
 
-/// The margin, as a share of the diagonal, from which on an answer in this precision is judged.
+/// What margins and allowances of a surface are shares of: the diagonal of its box. A surface that is a point has none, and is
+/// as large as its model, or 1.
+pub fn size(surface: &ModelSurface, model: &Model) -> f64 {
+    let of = |bounds: Option<ControlBox>| bounds.map(|bounds| bounds.diagonal()).filter(|&size| size > 0.0);
+    of(ControlBox::around(&surface.points)).or_else(|| of(model.control_box())).unwrap_or(1.0)
+}
+
+/// The margin, as a share of a surface's size, from which on an answer in this precision is judged.
 pub fn least_margin(precision: Precision) -> f64 {
     match precision {
         Precision::F64 => 1e-12,
         Precision::F32 => 2e-5,
+    }
+}
+
+/// The margin, as a share of a surface's size, from which on a ray must not be given up: what is nearer to another answer may
+/// take more work than there is.
+pub fn clear_margin(precision: Precision) -> f64 {
+    match precision {
+        Precision::F64 => 1e-9,
+        Precision::F32 => 1e-4,
     }
 }
 

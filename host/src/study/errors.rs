@@ -161,9 +161,11 @@ impl Spread {
 
 #[cfg(test)]
 mod tests {
+    use patchray::ray::Incidence;
+
     use super::*;
     use crate::judge::{Truth, allowance};
-    use crate::scanline::Found;
+    use crate::scanline::{Found, Normal};
     use crate::scene::model::ModelSurface;
     use crate::scene::trace::Precision;
 
@@ -187,9 +189,24 @@ mod tests {
             scan_line: 0,
             valid: true,
         };
-        let hit = |t| Outcome::Hit(Found { t, u: 0.5, v: 0.5, surface: 0, normal: None, grazing: false });
+        let hit = |t| {
+            Outcome::Hit(Found {
+                t,
+                u: 0.5,
+                v: 0.5,
+                surface: 0,
+                normal: Normal::Nowhere,
+                incidence: Incidence::Crossing,
+            })
+        };
         let truth = |roots: &[f64]| RayTruth {
-            truth: Truth { closest: roots.first().copied(), roots: roots.len(), open: false, margin: 1.0 },
+            truth: Truth {
+                closest: roots.first().copied(),
+                roots: roots.len(),
+                open: false,
+                margin: 1.0,
+                ..Truth::default()
+            },
             roots: roots.to_vec(),
         };
         let judged = |outcome, roots: &[f64]| judge.judge(&outcome, &ray, &truth(roots));

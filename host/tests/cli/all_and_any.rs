@@ -4,7 +4,7 @@ use patchray_host::scanline::row;
 use patchray_host::scene::model::Model;
 use patchray_host::scene::{bpt, shapes, teapot};
 
-use super::{Folder, TEAPOT, fields, printed, said};
+use super::{Folder, METHODS, TEAPOT, fields, printed, said};
 
 /// The rays of the common view, pixel by pixel.
 fn common_view() -> String {
@@ -146,6 +146,42 @@ fn a_ray_given_up_has_lines_that_are_no_hits() {
     assert!(lines[0].iter().all(|line| fields(line)[1] == "0" && line.ends_with(",gave-up:surfaces")), "{answers}");
     let answers = printed(&folder.done("query 300.bpt rays.csv --all --limit surfaces=0"));
     assert!(answers.contains("0,0,,,,,,,,gave-up:surfaces\n1,0,,,,,,,,miss\n"), "{answers}");
+}
+
+/// A line through the middle of a stack of squares meets all of them, whichever of its points is the origin.
+#[test]
+fn whole_lines_are_answered_by_every_method() {
+    let folder = Folder::new();
+    folder.put("stack.bpt", bpt::write(&stack(9)));
+    let ranges = ["-inf,inf", "-Infinity,", ",", "0,INF", "-inf,0", "-INF,-4.25", ",2.25"];
+    let rays: String = ranges.iter().map(|range| format!("0.3,0.6,4.5,0,0,2,{range}\n")).collect();
+    folder.put("lines.csv", format!("ox,oy,oz,dx,dy,dz,tmin,tmax\n{rays}"));
+    // Of the squares at z = 0 to 8, how many and at which t the first.
+    let expected = [(9, -2.25), (9, -2.25), (4, 0.25), (4, 0.25), (5, -2.25), (0, 0.0), (4, 0.25)];
+    let on_square = |z: f64| (z - z.round()).abs() < 1e-5;
+    for precision in ["f32", "f64"] {
+        for method in METHODS {
+            let flags = format!("query stack.bpt lines.csv --method {method} --precision {precision} --flatness 0.01");
+            let check = |words: &str, counts: &dyn Fn(usize) -> usize| {
+                let answers = printed(&folder.done(words));
+                for (lines, (count, first)) in by_ray(&answers).iter().zip(expected) {
+                    let hits: Vec<_> =
+                        lines.iter().map(|line| fields(line)).filter(|fields| fields[1] == "1").collect();
+                    assert_eq!(hits.len(), counts(count), "{words}: {lines:?}");
+                    let t: Vec<f64> = hits.iter().map(|fields| fields[2].parse().expect("a number")).collect();
+                    let is_first = words.ends_with("--any") || t.first().is_none_or(|t| (t - first).abs() < 1e-5);
+                    assert!(is_first && t.iter().all(|t| on_square(4.5 + 2.0 * t)), "{words}: {lines:?}");
+                }
+            };
+            check(&flags, &|count| count.min(1));
+            if !method.ends_with("coherent") {
+                check(&format!("{flags} --all"), &|count| count);
+                check(&format!("{flags} --any"), &|count| count.min(1));
+            }
+        }
+    }
+    folder.put("none.csv", "ox,oy,oz,dx,dy,dz,tmin\n0.3,0.6,4.5,0,0,2,inf\n");
+    folder.fails("query stack.bpt none.csv -o a.csv", 3, &["none.csv:2:19", "`tmin` is inf, which leaves no t"]);
 }
 
 #[test]

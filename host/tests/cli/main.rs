@@ -14,6 +14,7 @@ mod b_splines;
 mod bad_input;
 mod bake;
 mod channels;
+mod normals;
 mod parts;
 mod scenes;
 mod study;

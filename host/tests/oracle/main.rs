@@ -20,4 +20,5 @@ macro_rules! in_either {
 mod cases;
 mod closed_forms;
 mod extremes;
+mod steep;
 mod truth;

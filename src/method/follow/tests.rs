@@ -1,4 +1,6 @@
 use super::*;
+use crate::parameter::Number;
+use crate::ray::Incidence;
 
 /// u and v as functions of x and y, with their derivatives per unit of x and of y.
 type Motion = fn(f64, f64) -> ([f64; 2], [[f64; 2]; 2]);
@@ -76,14 +78,16 @@ fn another_line_is_not_remembered_and_an_unknown_rate_predicts_the_last_point() 
 /// Of two surfaces that coincide rounding once chose the one that is named, from ray to ray.
 #[test]
 fn a_claim_is_contested_by_another_surface_at_its_depth() {
-    let root = |depth| Root { u: 0.5, v: 0.5, depth, grazing: false };
-    let limits = Limits::<f64>::default();
-    let claim = Claim::of(&root(0.25), 3, &limits);
+    let root =
+        |depth| Root { u: Number::new(0.5), v: Number::new(0.5), depth, incidence: Incidence::Crossing, turned: false };
+    let exact = Exactness { tolerance: 2e-15, rounding: 4e-15, size: 1.0, reach: 1.0 };
+    let allowed = exact.allowed();
+    let claim = Claim::of(&root(0.25), 3, &exact);
     let contested = |depth, surface| claim.is_contested_by(&root(depth), surface);
-    assert!(contested(0.25 + 2.0 * limits.tolerance, 2) && contested(0.25 - 2.0 * limits.tolerance, 4));
+    assert!(contested(0.25 + 2.0 * allowed, 2) && contested(0.25 - 2.0 * allowed, 4));
     // Its own surface found once more, and what lies apart.
     assert!(!contested(0.25, 3) && !contested(0.25 + 1e-9, 2) && !contested(0.1, 2));
     // It is looked for behind the root too.
     let best = Best { root: root(0.25), surface: 3, kept: true };
-    assert!(claim.up_to(Some(&best)) > 0.25 + 2.0 * limits.tolerance);
+    assert!(claim.up_to(Some(&best)) > 0.25 + 2.0 * allowed);
 }

@@ -40,9 +40,10 @@ impl OfKind for OfNoView {
             return;
         };
         let mut lane = Lane::<P>::new(surfaces);
+        let remembers = matches!(way, Way::NewtonCoherent | Way::NewtonCoherentProving | Way::ClippingCoherent);
         scribble(&mut bytes, &mut lane.remembered);
         let (kept, scan_line) = (lane.remembered.clone(), bytes.count());
-        larger_and_smaller(&mut bytes, [interval.min(), interval.max()], surfaces, way, |limits| {
+        larger_and_smaller(&mut bytes, [interval.min(), interval.max()], surfaces, way, remembers, |limits| {
             lane.remembered.clone_from(&kept);
             let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, limits);
             (answer, lane.work)
@@ -82,7 +83,7 @@ impl OfKind for OfView {
         let mut line = line_room.line(&view, method, window).expect("as many spans as there can be");
         let _ = thread.trace(method, &view, &mut line, scan_line, &first, &any_limits(&mut bytes));
         let (remembered, followed, last) = (thread.remembered.clone(), thread.followed.clone(), thread.last);
-        larger_and_smaller(&mut bytes, range, surfaces, method, |limits| {
+        larger_and_smaller(&mut bytes, range, surfaces, method, method.remembers(), |limits| {
             thread.remembered.clone_from(&remembered);
             thread.followed.clone_from(&followed);
             thread.last = last;
@@ -100,10 +101,11 @@ fn larger_and_smaller<S: Scalar>(
     range: [S; 2],
     surfaces: usize,
     method: impl Debug + Copy,
+    remembers: bool,
     mut call: impl FnMut(&Limits<S>) -> (Answer<S>, Work),
 ) {
     let mut limits = any_limits::<S>(bytes);
-    let mut larger = None;
+    let mut larger: Option<(Limits<S>, Work, Answer<S>)> = None;
     for _ in 0..3 {
         let (answer, work) = call(&limits);
         within_limits(&work, &limits, method);
@@ -111,12 +113,16 @@ fn larger_and_smaller<S: Scalar>(
             in_range(&hit, range, surfaces, (method, &limits));
         }
         if let Some((most, more_work, more)) = larger {
-            if answer.is_ok() {
+            // With memory a bound may have been met, and the ray searched without it.
+            let unbounded = answer.is_ok()
+                && (!remembers || (alone(&work, &limits) && most.pending_domains == limits.pending_domains));
+            if unbounded {
                 // No bound was met, so that a larger one changes nothing at all.
                 assert_eq!((more, more_work), (answer, work), "{method:?}: with {most:?}, and with {limits:?}");
             }
             let (more, less) = (more_work.counts(), work.counts());
-            assert!(more.iter().zip(less).all(|(&more, less)| less <= more), "{method:?}: {work:?} of {more_work:?}");
+            let grows = more.iter().zip(less).all(|(&more, less)| less <= more);
+            assert!(grows || remembers, "{method:?}: {work:?} of {more_work:?}");
         }
         larger = Some((limits, work, answer));
         for budget in budgets_of(&mut limits) {
@@ -127,4 +133,20 @@ fn larger_and_smaller<S: Scalar>(
             };
         }
     }
+}
+
+/// Whether every budget was left some of: then no search ran out.
+fn alone<S: Scalar>(work: &Work, limits: &Limits<S>) -> bool {
+    [
+        (work.surfaces_tested, limits.surfaces),
+        (work.nodes_visited, limits.nodes),
+        (work.patches_tested, limits.patches),
+        (work.voxels_visited, limits.voxels),
+        (work.spans_visited, limits.spans),
+        (work.newton_steps, limits.newton_steps),
+        (work.clip_steps, limits.clip_steps),
+        (work.bisections, limits.bisections),
+    ]
+    .iter()
+    .all(|(count, budget)| count < budget)
 }

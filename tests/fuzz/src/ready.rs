@@ -108,7 +108,7 @@ impl<S: Scalar> PatchRoom<S> {
         let memory = PatchMemory { patches: &mut self.patches, first: &mut self.first };
         let tree = with_tree.then_some(TreeMemory { nodes: &mut self.nodes, links: &mut self.links });
         let mut scratch = subdivide_scratch();
-        match subdivide(scene.nets(), scene.frame(), options, &mut scratch.view(), memory, tree) {
+        match subdivide(scene.surfaces(), scene.frame(), options, &mut scratch.view(), memory, tree) {
             Ok(_) => Stage::Done,
             Err(SubdivideError::Memory(n)) => Stage::Lacks([n.patches, n.first, n.nodes, n.links]),
             Err(_) => Stage::Refused,

@@ -10,7 +10,7 @@ use crate::reference::{bezier, blend, exact};
 use patchray::bernstein::MAX_DEGREE;
 use patchray::bspline::BSpline;
 use patchray::pieces::{Part, Piece, PieceError, PieceMemory, Pieces};
-use patchray::ray::Hit;
+use patchray::ray::{Hit, Incidence};
 use patchray::scalar::Scalar;
 use patchray::surface::Direction;
 
@@ -97,7 +97,9 @@ impl OfKind for Splines {
         are_the_spline(&cut, &spline, case);
         let [u, v] = [0; 2].map(|_| P::Scalar::from_f64(f64::from(bytes.byte()) / 255.0));
         for (surface, piece) in (0..).zip(cut.all()) {
-            let place = cut.in_knots(&Hit { t: u, u, v, surface, grazing: false }).expect("there is such a piece");
+            let place = cut
+                .in_knots(&Hit { t: u, u, v, surface, incidence: Incidence::Crossing })
+                .expect("there is such a piece");
             let Part { u: [u0, u1], v: [v0, v1] } = piece.part();
             assert!(u0 <= place.u && place.u <= u1 && v0 <= place.v && place.v <= v1, "{place:?} of {piece:?}");
             assert_eq!(place.spline, piece.spline());

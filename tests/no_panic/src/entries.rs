@@ -15,6 +15,7 @@ use patchray::measure::Measure;
 use patchray::method::Remembered;
 use patchray::method::{ClipScratch, Scratch, clipping, clipping_coherent, newton, newton_coherent};
 use patchray::newton::Solver;
+use patchray::parameter::Parameter;
 use patchray::patch::Patches;
 use patchray::patch::{Crossing, Parallelepiped, Patch, Pierce};
 use patchray::pieces::{InKnots, Part, Piece, PieceError, PieceMemory, Pieces};
@@ -154,7 +155,7 @@ unsafe extern "C" fn net<P: Point>(
 pub struct OfNet<P: Point> {
     jet: Option<Jet<P>>,
     position: Option<[P::Scalar; 3]>,
-    normal: Option<[P::Scalar; 3]>,
+    normal: Option<Option<[P::Scalar; 3]>>,
     bend: [P::Scalar; 3],
     corners: [P; 4],
     rows: usize,
@@ -173,7 +174,7 @@ extern "C" fn evaluate<P: Point>(
     out.jet = net.jet(u, v, &mut basis.view()).or(net.jet(u, v, &mut small.view())).ok();
     out.position = net.position(u, v, &mut basis.view()).ok();
     out.normal = net.normal(u, v, &mut basis.view()).ok();
-    out.bend = net.bend();
+    out.bend = net.bend(u);
     out.corners = net.corners();
     out.rows = net.rows().map(<[P]>::len).sum();
     out.shape = (net.degree_u(), net.degree_v(), net.points().len());
@@ -285,7 +286,7 @@ unsafe extern "C" fn build<P: Point>(
 pub struct OfScene<P: Point> {
     header: SceneHeader<P::Scalar>,
     surface: Option<Surface<'static, P>>,
-    normal: Result<[P::Scalar; 3], GaveUp<P::Scalar>>,
+    normal: Result<Option<[P::Scalar; 3]>, GaveUp<P::Scalar>>,
     ray: Result<Ray<P::Scalar>, RayError>,
     points: usize,
     numbers: (usize, bool, u32),
@@ -307,7 +308,7 @@ unsafe extern "C" fn look<P: Point>(
     out.surface = scene.surface(number);
     out.normal = scene.normal(hit, &mut basis.view());
     out.ray = scene.ray(asked.origin, asked.direction);
-    out.points = scene.nets().map(|net| net.points().len()).sum();
+    out.points = scene.surfaces().map(|surface| surface.net.points().len()).sum();
     out.numbers = (scene.len(), scene.is_empty(), scene.longest_walk());
 }
 
@@ -323,13 +324,13 @@ unsafe extern "C" fn patches<P: Point>(
     // SAFETY: the caller keeps the contract of `slots`.
     let (scene, patches, first) = unsafe { (scene.view(), memory.patches.slots(), memory.first.slots()) };
     let memory = PatchMemory { patches, first };
-    *out = subdivide(scene.nets(), scene.frame(), options, &mut scratch.view(), memory, None);
+    *out = subdivide(scene.surfaces(), scene.frame(), options, &mut scratch.view(), memory, None);
 }
 
 /// # Safety
 /// See [`Lent::slots`].
 unsafe extern "C" fn tree<P: Point>(
-    nets: &Lent<Net<'static, P>>,
+    surfaces: &Lent<Surface<'static, P>>,
     frame: &Frame<P::Scalar>,
     options: &Subdivision<P::Scalar>,
     scratch: &mut SubdivideScratch<P, 16>,
@@ -337,11 +338,11 @@ unsafe extern "C" fn tree<P: Point>(
     out: &mut Result<Subdivided<'static, P::Scalar>, SubdivideError>,
 ) {
     // SAFETY: the caller keeps the contract of `slots`.
-    let (nets, patches, first) = unsafe { (nets.slots(), memory.patches.slots(), memory.first.slots()) };
+    let (surfaces, patches, first) = unsafe { (surfaces.slots(), memory.patches.slots(), memory.first.slots()) };
     // SAFETY: likewise.
     let (nodes, links) = unsafe { (memory.nodes.slots(), memory.links.slots()) };
     let (memory, tree) = (PatchMemory { patches, first }, TreeMemory { nodes, links });
-    *out = subdivide(nets.iter().copied(), frame, options, &mut scratch.view(), memory, Some(tree));
+    *out = subdivide(surfaces.iter().copied(), frame, options, &mut scratch.view(), memory, Some(tree));
 }
 
 /// # Safety
@@ -493,11 +494,11 @@ unsafe extern "C" fn hits_clipping<P: Point>(
 extern "C" fn clip_roots<P: Point>(
     surface: &Surface<'static, P>,
     planes: &Planes<P::Scalar>,
-    order: &Order<P::Scalar>,
+    order: &Order<P::Parameter>,
     limits: &Limits<P::Scalar>,
     scratch: &mut ClipScratch<P, 3, 9, 2>,
     work: &mut Work,
-    roots: &mut Vec<Root<P::Scalar>, HITS>,
+    roots: &mut Vec<Root<P::Parameter>, HITS>,
     out: &mut Result<(), Limit>,
 ) {
     let room = &mut scratch.view();
@@ -514,33 +515,34 @@ extern "C" fn clip_roots<P: Point>(
 
 /// What is asked of one region, and of those that wait.
 #[derive(Debug)]
-pub struct OfRegion<S> {
-    widths: [S; 2],
-    points: [[S; 2]; 2],
-    halves: [Option<[Region<S>; 2]>; 2],
-    narrowed: Region<S>,
-    common: Option<Region<S>>,
+pub struct OfRegion<A: Parameter> {
+    widths: [A::Scalar; 2],
+    points: [[A; 2]; 2],
+    halves: [Option<[Region<A>; 2]>; 2],
+    narrowed: Region<A>,
+    common: Option<Region<A>>,
     says: [bool; 3],
     pushed: Result<(), Limit>,
-    popped: Option<Region<S>>,
-    order: Order<S>,
+    popped: Option<Region<A>>,
+    order: Order<A>,
 }
 
 extern "C" fn region<P: Point>(
-    region: &Region<P::Scalar>,
-    other: &Region<P::Scalar>,
+    region: &Region<P::Parameter>,
+    other: &Region<P::Parameter>,
     domains: &[Domain; 2],
-    order: &mut Order<P::Scalar>,
-    pending: &mut Vec<Region<P::Scalar>, PENDING>,
+    order: &mut Order<P::Parameter>,
+    pending: &mut Vec<Region<P::Parameter>, PENDING>,
     most: u32,
-    &point: &[P::Scalar; 2],
-    out: &mut OfRegion<P::Scalar>,
+    &numbers: &[P::Scalar; 2],
+    out: &mut OfRegion<P::Parameter>,
 ) {
+    let point = numbers.map(P::Parameter::new);
     out.widths = region.widths();
     out.points = [region.middle(), region.nearest(point)];
     out.halves = [region.halves(Direction::U), region.halves(Direction::V)];
     out.narrowed = *region;
-    out.narrowed.narrow(region.next, point);
+    out.narrowed.narrow(region.next, numbers);
     out.common = region.meet(other.sides);
     out.says = [region.holds(point), region.adjoins(other), domains[0].adjoins(domains[1])];
     out.pushed = order.push(*region, pending, most);
@@ -556,7 +558,7 @@ extern "C" fn newton_solve<P: Point>(
     limits: &Limits<P::Scalar>,
     work: &mut Work,
     scratch: &mut Scratch<P, ORDER, POINTS>,
-    out: &mut Result<Option<Root<P::Scalar>>, Limit>,
+    out: &mut Result<Option<Root<P::Parameter>>, Limit>,
 ) {
     let mut scratch = scratch.view();
     *out = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis).solve(*start, work);
@@ -721,7 +723,7 @@ unsafe extern "C" fn verify<P: Point>(
     surface: usize,
     patches: &Lent<Patch<P::Scalar>>,
     planes: &Planes<P::Scalar>,
-    root: &Root<P::Scalar>,
+    root: &Root<P::Parameter>,
     nearest: P::Scalar,
     limits: &Limits<P::Scalar>,
     work: &mut Work,

@@ -50,6 +50,29 @@ fn ranges_and_scan_lines() {
 }
 
 #[test]
+fn ranges_may_have_no_ends_and_empty_fields_are_the_defaults() {
+    let infinity = f64::INFINITY;
+    for (text, range) in [
+        ("-inf,inf", [-infinity, infinity]),
+        ("-Infinity, +INF ", [-infinity, infinity]),
+        ("-inf,-2.5", [-infinity, -2.5]),
+        ("-inf,", [-infinity, infinity]),
+        (",", [0.0, infinity]),
+        (" ,\t", [0.0, infinity]),
+        (",7", [0.0, 7.0]),
+        ("-3,\"\"", [-3.0, infinity]),
+    ] {
+        let rays = strict(&format!("{HEADER}\n0,0,0,0,0,1,{text},0\n")).expect(text).rays;
+        assert_eq!([rays[0].t_min, rays[0].t_max], range, "{text}");
+        assert!(rays[0].valid);
+    }
+    // Other columns have no defaults.
+    for line in [",0,0,0,0,1,0,1,0", "0,0,0,0,0,,0,1,0", "0,0,0,0,0,1,0,1,"] {
+        assert!(strict(&format!("{HEADER}\n{line}\n")).is_err(), "{line}");
+    }
+}
+
+#[test]
 fn a_batch_may_be_empty_but_not_the_file() {
     assert!(strict("ox,oy,oz,dx,dy,dz").expect("valid").rays.is_empty());
     refused_always("", "r.csv:1:1", "the file is empty");
@@ -84,7 +107,12 @@ fn rays_that_cannot_be_traced() {
     refused_or_kept("0,0,0,0,-inf,1,0,1,8", "r.csv:3:9", "`dy` is infinite");
     refused_or_kept("0,0,0,0,1e999,1,0,1,8", "r.csv:3:9", "`dy` is too large");
     refused_or_kept("0,0,0,0,-0,0,0,1,8", "r.csv:3:1", "the direction is zero");
-    refused_or_kept("0,0,0,0,0,1,inf,inf,8", "r.csv:3:13", "`tmin` is infinite");
+    refused_or_kept("0,0,0,0,0,1,inf,inf,8", "r.csv:3:13", "`tmin` is inf, which leaves no t");
+    refused_or_kept("0,0,0,0,0,1,Infinity,,8", "r.csv:3:13", "`tmin` is inf, which leaves no t");
+    refused_or_kept("0,0,0,0,0,1,-inf,-inf,8", "r.csv:3:18", "`tmax` is -inf, which leaves no t");
+    refused_or_kept("0,0,0,0,0,1,nan,,8", "r.csv:3:13", "`tmin` is not a number (NaN)");
+    refused_or_kept("0,0,0,0,0,1,-1e999,inf,8", "r.csv:3:13", "`tmin` is too large");
+    refused_or_kept("0,0,0,0,0,1,,-1,8", "r.csv:3:14", "`tmin` is 0 and above `tmax`, which is -1");
     refused_or_kept("0,0,0,0,0,1,0,NaN,8", "r.csv:3:15", "`tmax` is not a number (NaN)");
     refused_or_kept("0,0,0,0,0,1,0,1e999,8", "r.csv:3:15", "`tmax` is too large");
     refused_or_kept("0,0,0,0,0,1,2,1,8", "r.csv:3:15", "`tmin` is 2 and above `tmax`, which is 1");

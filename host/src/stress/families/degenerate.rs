@@ -65,7 +65,7 @@ const CENTRE: DVec3 = DVec3::new(0.5, -0.25, 1.0);
 
 /// A truth that nothing puts in doubt.
 fn sure(closest: Option<f64>) -> Truth {
-    Truth { closest, roots: usize::from(closest.is_some()), open: false, margin: 1.0 }
+    Truth { closest, roots: usize::from(closest.is_some()), margin: 1.0, ..Truth::default() }
 }
 
 /// The roots of a t² + 2 b t + c, a not 0, in order; a negative discriminant is taken for rounding.
@@ -126,8 +126,10 @@ fn poles(draw: &mut Draw) -> Vec<Case> {
         }
     });
     let onto_cone: Vec<RayLine> = onto_cone.collect();
-    let case = |model, rays, exact: fn(&RayLine) -> Truth| Case { exact: Some(exact), ..Case::of_rays(model, rays) };
-    vec![case(sphere(CENTRE.to_array(), 1.5), onto_sphere, on_sphere), case(cone, onto_cone, on_cone)]
+    vec![
+        Case::of_form(sphere(CENTRE.to_array(), 1.5), onto_sphere, |_, ray| on_sphere(ray)),
+        Case::of_form(cone, onto_cone, |_, ray| on_cone(ray)),
+    ]
 }
 
 fn cusps(draw: &mut Draw) -> Vec<Case> {

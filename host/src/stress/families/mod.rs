@@ -1,11 +1,17 @@
 //! All families, one file for each way of being hard.
 
 mod borders;
+mod contact;
 mod degenerate;
 mod grazing;
+mod jumps;
 mod layers;
 mod placed;
+mod sizes;
+mod stalled;
 mod stretched;
+mod thin;
+mod weighted;
 
 use super::case::Family;
 
@@ -18,6 +24,12 @@ pub fn all() -> Vec<Family> {
         &placed::FAMILIES,
         &borders::FAMILIES,
         &layers::FAMILIES,
+        &weighted::FAMILIES,
+        &sizes::FAMILIES,
+        &thin::FAMILIES,
+        &stalled::FAMILIES,
+        &jumps::FAMILIES,
+        &contact::FAMILIES,
     ]
     .concat()
 }

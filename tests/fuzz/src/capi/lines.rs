@@ -335,7 +335,7 @@ impl<P: Views + Kind + Slot> Lines<P> {
             let error = room.map(|_| ()).expect_err("in C there is none");
             let fits = match error {
                 ViewError::Flat => code == PATCHRAY_CAMERA_FLAT,
-                ViewError::Far => code == PATCHRAY_CAMERA_FAR,
+                ViewError::Far | ViewError::Near => code == PATCHRAY_CAMERA_FAR,
                 ViewError::Ray(_) => (PATCHRAY_RAY_RANGE..=PATCHRAY_RAY_NAN).contains(&code),
                 ViewError::Patches | ViewError::TooLarge | ViewError::Memory(_) => false,
             };

@@ -11,7 +11,7 @@ use patchray::bernstein::Basis;
 use patchray::capi::*;
 use patchray::limits::{Acceptance, GaveUp, Limit, Limits};
 use patchray::method::Remembered;
-use patchray::ray::{Hit, Interval};
+use patchray::ray::{Hit, Incidence, Interval};
 use patchray::scalar::Scalar;
 use std::ffi::CStr;
 
@@ -73,8 +73,9 @@ impl<P: InC + Kind + Slot> Prepared<P> {
         if way.is_none() && function != ALL_HITS {
             // SAFETY: likewise.
             let (hit, normal) = unsafe { (&*self.hit, *self.normal) };
-            let hit = Hit { t: hit.t, u: hit.u, v: hit.v, surface: hit.surface, grazing: false };
-            assert_eq!(scene.normal(&hit, &mut Basis::<P::Scalar, 16>::new().view()), Ok(normal));
+            let hit = Hit { t: hit.t, u: hit.u, v: hit.v, surface: hit.surface, incidence: Incidence::Crossing };
+            let expected = scene.normal(&hit, &mut Basis::<P::Scalar, 16>::new().view()).map(Option::unwrap_or_default);
+            assert_eq!(expected, Ok(normal));
             return;
         }
         let (Ok(in_rust), Some(interval)) = (scene.ray(ray.origin, ray.direction), Interval::new(ray.t_min, ray.t_max))
@@ -140,8 +141,8 @@ impl<P: InC + Kind + Slot> Prepared<P> {
     }
 }
 
-pub(super) fn in_c<S>(Hit { t, u, v, surface, grazing }: Hit<S>) -> patchray_hit<S> {
-    patchray_hit { t, u, v, surface, grazing: u32::from(grazing) }
+pub(super) fn in_c<S>(Hit { t, u, v, surface, incidence }: Hit<S>) -> patchray_hit<S> {
+    patchray_hit { t, u, v, surface, incidence: incidence as u32 }
 }
 
 /// The code says what the answer is.
