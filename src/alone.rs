@@ -2,6 +2,7 @@
 
 use crate::local::Local;
 use crate::parameter::Parameter;
+use crate::point::Flat;
 use crate::root::Root;
 use crate::scalar::Scalar;
 
@@ -25,12 +26,18 @@ pub(crate) struct Alone<A: Parameter> {
 impl<S: Scalar, A: Parameter<Scalar = S>> Alone<A> {
     /// Of a root on a surface, near which `local` holds.
     #[inline(always)]
-    pub(crate) fn new(root: &Root<A>, local: &Local<A>, bend: [S; 3], reach: S) -> Self {
+    pub(crate) fn new<F: Flat<Scalar = S, Parameter = A>>(
+        root: &Root<A>,
+        local: &Local<A>,
+        bend: [S; 3],
+        reach: S,
+    ) -> Self {
         let (root, [u, v]) = ([root.u, root.v], local.at);
         let off = [root[0].minus(u).abs(), root[1].minus(v).abs()];
         // A Jacobian that may be all rounding says nothing.
         let one = if local.may_be_singular(reach) { S::INFINITY } else { S::ONE };
-        Alone { root, off, inverse: local.inverse_bounds(one), bend }
+        // The bounds of what bends are times the weight.
+        Alone { root, off, inverse: local.inverse_bounds(local.unweighted::<F>(one)), bend }
     }
 
     /// Whether it is proved that no other root lies in a rectangle of the surface's domain. A NaN proves nothing.

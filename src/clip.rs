@@ -62,21 +62,29 @@ pub(crate) fn chords<S: Scalar>([p00, p10, p01, p11]: [[S; 2]; 4]) -> [[S; 2]; 2
 /// The lines are Nishita, Sederberg and Kakimoto's: L_u, for clipping u, along the net's mean chord in v, and L_v along that in
 /// u, so that distances to L_u change with u and hardly with v.
 #[inline(always)]
-fn normal<S: Scalar>(corners: [[S; 2]; 4], direction: Direction) -> [S; 2] {
+fn normal<F: Flat>(corners: [[F::Scalar; 2]; 4], direction: Direction) -> [F::Scalar; 2] {
     let [u, v] = chords(corners);
     let dot = u[0] * v[0] + u[1] * v[1];
     let (uu, vv) = (u[0] * u[0] + u[1] * u[1], v[0] * v[0] + v[1] * v[1]);
     // Lines that are all but parallel clip the same strip twice. Efremov, Havran and Seidel spread them from 60° on; but spread
     // lines no longer follow the chords, and clips then close in by a share instead of by squares: at 60° half of all
     // clips on the common teapot are of that kind, and a third of the time is lost. At 6° it is the other way round.
-    if dot * dot <= S::from_f64(0.99) * (uu * vv) && uu > S::ZERO && vv > S::ZERO {
-        return turned(match direction {
+    // What is so small that digits vanish is looked at with care; and so are null chords.
+    let square = uu * vv;
+    if dot * dot <= F::Scalar::from_f64(PARALLEL) * square && square * F::Scalar::EPSILON > F::Scalar::MIN_POSITIVE {
+        let [x, y] = turned(match direction {
             Direction::U => v,
             Direction::V => u,
         });
+        // Of a light net what it is multiplied by could vanish.
+        let inverse = if F::RATIONAL { F::Scalar::ONE / x.abs().greater(y.abs()) } else { F::Scalar::ONE };
+        return [x * inverse, y * inverse];
     }
     spread(u, v, direction)
 }
+
+/// The square of the cosine from which on two chords are all but parallel: see [`normal`] for what it trades.
+const PARALLEL: f64 = 0.99;
 
 /// The normal for lines 60° apart about the mean direction of two chords that are near parallel; if one is null, it is the
 /// other turned by 90°.
@@ -92,7 +100,7 @@ fn spread<S: Scalar>(u: [S; 2], v: [S; 2], direction: Direction) -> [S; 2] {
         v = turned(u);
     }
     let (dot, cross) = (u[0] * v[0] + u[1] * v[1], u[0] * v[1] - u[1] * v[0]);
-    if dot.abs() > S::HALF {
+    if dot * dot > S::from_f64(PARALLEL) {
         let sign = if dot < S::ZERO { -S::ONE } else { S::ONE };
         let mean = unit([u[0] + v[0] * sign, u[1] + v[1] * sign]);
         let (cos, sin) = (S::from_f64(0.866_025_403_784_438_6), S::HALF);
@@ -108,7 +116,7 @@ fn spread<S: Scalar>(u: [S; 2], v: [S; 2], direction: Direction) -> [S; 2] {
 }
 
 /// The vector's direction; zero for zero.
-fn unit<S: Scalar>([x, y]: [S; 2]) -> [S; 2] {
+pub(crate) fn unit<S: Scalar>([x, y]: [S; 2]) -> [S; 2] {
     let largest = x.abs().greater(y.abs());
     if !(largest > S::ZERO) {
         return [S::ZERO; 2];
@@ -120,7 +128,7 @@ fn unit<S: Scalar>([x, y]: [S; 2]) -> [S; 2] {
 
 /// The vector turned by 90°.
 #[inline(always)]
-fn turned<S: Scalar>([x, y]: [S; 2]) -> [S; 2] {
+pub(crate) fn turned<S: Scalar>([x, y]: [S; 2]) -> [S; 2] {
     [-y, x]
 }
 
@@ -147,7 +155,7 @@ fn clip_any_degree<F: Flat>(
     noise: &Noise<F::Scalar>,
 ) -> Clip<F::Scalar> {
     let (rows, columns) = (degrees.rows(), degrees.columns());
-    let normal = normal(corners(degrees, net), direction);
+    let normal = normal::<F>(corners(degrees, net), direction);
     let mut extents = [[F::Scalar::INFINITY, F::Scalar::LEAST]; MAX_DEGREE + 1];
     let error = noise.across(normal);
     for (i, row) in net.chunks_exact(columns).enumerate() {
@@ -177,7 +185,7 @@ fn clip_unrolled<F: Flat, const ORDER: usize, const N: usize>(
     noise: &Noise<F::Scalar>,
 ) -> Clip<F::Scalar> {
     const { assert!(ORDER * ORDER == N && ORDER > 1) }
-    let normal = normal([net[0], net[N - ORDER], net[ORDER - 1], net[N - 1]].map(F::position), direction);
+    let normal = normal::<F>([net[0], net[N - ORDER], net[ORDER - 1], net[N - 1]].map(F::position), direction);
     let error = noise.across(normal);
     let mut all = [[F::Scalar::ZERO; 2]; N];
     for k in 0..N {
@@ -234,7 +242,7 @@ fn hull_at_zero<F: Flat, const N: usize>(
 ) -> Clip<F::Scalar> {
     let [a, b] = normal.map(F::Scalar::abs);
     let error = noise.across(normal);
-    let tolerance = noise.tolerance * a.greater(b) + error * F::Scalar::from_u32(4);
+    let tolerance = noise.tolerance * a.greater(b) + error * F::Scalar::TWO;
     // What widens the extents when they are compared.
     let error = if F::RATIONAL { F::Scalar::ZERO } else { error };
     let order = order.min(N);
@@ -295,8 +303,8 @@ fn crossing<S: Scalar, const N: usize>(order: usize, height: impl Fn(usize) -> S
         heights[k] = height(k);
     }
     // Each pair of a point above and a later one not above is a chord of the hull; the first crossing of any is the hull's.
-    // As a fraction, whose parts are positive, so that comparing needs no division.
-    let [mut numerator, mut denominator] = [S::ONE, S::ZERO];
+    // Products of heights are not compared, for those of small surfaces with small weights vanish.
+    let mut first = S::INFINITY;
     for i in 0..order {
         let a = heights[i];
         if !(a > S::ZERO) {
@@ -306,13 +314,13 @@ fn crossing<S: Scalar, const N: usize>(order: usize, height: impl Fn(usize) -> S
             let b = heights[k];
             if b <= S::ZERO {
                 let (crossed, drop) = (S::from_u32(k as u32) * a - S::from_u32(i as u32) * b, a - b);
-                if crossed * denominator < numerator * drop {
-                    (numerator, denominator) = (crossed, drop);
+                if crossed < first * drop {
+                    first = crossed / drop;
                 }
             }
         }
     }
-    if denominator > S::ZERO { numerator / denominator } else { S::ZERO }
+    if first.is_finite() { first } else { S::ZERO }
 }
 
 #[cfg(test)]

@@ -10,9 +10,9 @@
 //! (1997) found, where a region shrinks to a point that the ray passes by.
 
 use crate::bernstein::{BasisView, Direction, Full};
-use crate::clip::{Clip, chords, clip, corners};
+use crate::clip::{Clip, chords, clip, corners, turned, unit};
 use crate::contract::{Contraction, Single, contract, is_provable, single};
-use crate::graze::{Across, Met, across, allowed, first_met, on_line, polished};
+use crate::graze::{Across, Met, across, first_met, on_line, polished};
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::local::{Exactness, Local};
 use crate::parameter::Parameter;
@@ -270,9 +270,14 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                     match across(part.degrees, part.net, &noise) {
                         Across::Apart => Step::Done(None),
                         Across::Line(along) => {
-                            match on_line(surface, planes, whole, &part.region, along, exact, part.error, basis)? {
-                                None => halves(),
-                                met => Step::Done(met),
+                            if passes(surface, whole, &part.region, Some(turned(along)), exact, basis)? {
+                                Step::Done(None)
+                            } else {
+                                let held = part.error * P::Scalar::from_u32(HELD);
+                                match on_line(surface, planes, whole, &part.region, along, exact, held, basis)? {
+                                    Some(met) => Step::Done(Some(met)),
+                                    None => halves(),
+                                }
                             }
                         }
                         Across::Open => halves(),
@@ -283,9 +288,8 @@ impl<P: Point> Roots<'_, '_, '_, P> {
             if let (Step::Settled, true) = (&step, settled) {
                 step = match nearest(surface, planes, whole, part, exact, basis)? {
                     Some(met) => Step::Done(Some(met)),
-                    None if passes(surface, whole, part, exact, basis)? => Step::Done(None),
-                    // Between lines that are near parallel both clips may settle too soon. A region of which the number type
-                    // holds no part is as one of its points, all of which pass the ray by more than rounding.
+                    None if all_pass(surface, whole, part, exact, basis)? => Step::Done(None),
+                    // Between lines that are near parallel both clips may settle too soon.
                     None => {
                         let longer = part.longer();
                         let halves = part.region.halves(longer).or_else(|| part.region.halves(longer.other()));
@@ -310,7 +314,7 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                     if let Some(Met { place, incidence }) = met {
                         let mut root = place.root(&surface.net, whole, planes, exact, basis)?;
                         root.incidence = root.incidence.max(incidence);
-                        let seen = Seen { surface, planes, whole, exact, allowed: allowed(exact, part.error) };
+                        let seen = Seen { surface, planes, whole, exact };
                         let sighting = seen.add(&mut root, found, basis)?;
                         if sighting != Sighting::Known {
                             self.sighting = sighting;
@@ -376,10 +380,14 @@ enum Step<A: Parameter> {
     Done(Option<Met<A>>),
 }
 
+/// A region that is as small as the error of its net, or as thin, holds a root, a grazing one, if some place of it passes the ray by
+/// no more than so many times that. Smaller proves of more regions that the ray passes them by, by halving them; larger takes more
+/// near misses for grazes.
+const HELD: u32 = 1;
+
 /// Of a region whose points all pass the ray within the tolerance or the error of their net, the one that the ray meets
-/// first, in its interval if one is; from its corners, the middles of its
-/// sides and its middle, each brought nearer by Newton's method. `None` if
-/// the ray passes all of them by, as it may at a phantom hit.
+/// first, in its interval if one is; from its corners, the middles of its sides and its middle, each brought nearer by Newton's
+/// method. `None` if the ray passes all of them by, as it may at a phantom hit.
 ///
 /// Such a region is small but where the ray lies in the surface.
 #[cold]
@@ -397,13 +405,15 @@ fn nearest<P: Point>(
     let corners = [from([u0, v0])?, from([u0, v1])?, from([u1, v0])?, from([u1, v1])?];
     let [a, b, c, d] = corners;
     let places = [from([u, v])?, a, b, c, d, from([u0, v])?, from([u1, v])?, from([u, v0])?, from([u, v1])?];
-    first_met(surface, planes, places, exact, part.error, basis)
+    let error = part.error * P::Scalar::from_u32(HELD);
+    first_met(surface, planes, places, exact, error, basis)
 }
 
-/// Whether a region is so small, and so far from the ray at its corner, that the ray passes all of it by more than rounding.
+/// Whether the ray is proved to pass all of a region by more than rounding: it passes a corner by more than the others lie from
+/// that, as the net tells; or, within the net's error, by what [`passes`] says.
 #[cold]
 #[inline(never)]
-fn passes<P: Point>(
+fn all_pass<P: Point>(
     surface: &Surface<'_, P>,
     whole: &[P::Flat],
     part: &Part<'_, P::Flat>,
@@ -411,8 +421,31 @@ fn passes<P: Point>(
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<bool, Limit> {
     let [[u, _], [v, _]] = part.region.sides;
-    let corner = Place::look([u, v], surface.net.degrees(), whole, basis)?;
-    Ok(corner.local.distance() > part.extent() + exact.rounding + part.error)
+    let corner = Local::at([u, v], surface.net.degrees(), whole, basis)?;
+    if corner.distance() > part.extent() + part.error + exact.rounding {
+        return Ok(true);
+    }
+    passes(surface, whole, &part.region, None, exact, basis)
+}
+
+/// Whether the ray is proved by Taylor's theorem to pass all of a region by more than rounding in the direction of this unit vector
+/// of the two planes' system, or in that in which it passes the middle.
+#[cold]
+#[inline(never)]
+fn passes<P: Point>(
+    surface: &Surface<'_, P>,
+    whole: &[P::Flat],
+    region: &Region<P::Parameter>,
+    direction: Option<[P::Scalar; 2]>,
+    exact: &Exactness<P::Scalar>,
+    basis: &mut BasisView<'_, P::Scalar>,
+) -> Result<bool, Limit> {
+    let [half_u, half_v] = region.widths().map(|width| width * P::Scalar::HALF);
+    let local = Local::at(region.middle(), surface.net.degrees(), whole, basis)?;
+    // Of a rational surface all is of the numerator over the weight at the middle.
+    let (off, [by_u, by_v]) = local.seen_along(direction.unwrap_or_else(|| unit(local.off())));
+    let strays = local.unweighted::<P::Flat>(surface.strays([half_u, half_v]));
+    Ok(off.abs() > by_u.abs() * half_u + by_v.abs() * half_v + strays + exact.rounding)
 }
 
 #[cfg(test)]

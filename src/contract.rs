@@ -73,9 +73,10 @@ pub(crate) fn contract<P: Point>(
     // Ends: each turn counts a step against its budget; and the region halves until the number type holds no more.
     loop {
         let halves = region.widths().map(|width| width * P::Scalar::HALF);
-        let strays = surface.strays(halves);
         let middle = region.middle();
         let local = Local::step_at(middle, surface.net.degrees(), whole, basis, limits, work)?;
+        let bound = surface.strays(halves);
+        let strays = local.unweighted::<P::Flat>(bound);
         let [along_u, along_v] = local.inverse_bounds(strays);
         // A NaN or a singular Jacobian proves nothing; nor does one that may be all rounding, as of a flat net seen edge on.
         let proved =
@@ -84,15 +85,15 @@ pub(crate) fn contract<P: Point>(
             return Ok(Contraction::Open);
         };
         let next = [middle[0].plus(du), middle[1].plus(dv)];
-        // A distance is a residual over the weight, which over a region that is proved varies little.
-        let heaviest = if P::RATIONAL { local.weight * P::Scalar::from_u32(4) } else { P::Scalar::ONE };
+        // A distance is that of the numerator over the weight, which over a region that is proved varies little.
+        let heaviest = P::Scalar::from_u32(if P::RATIONAL { 4 } else { 1 });
         let [slack_u, slack_v] = local.inverse_bounds(strays + loose.allowed() * heaviest);
         let near = [[next[0].plus(-slack_u), next[0].plus(slack_u)], [next[1].plus(-slack_v), next[1].plus(slack_v)]];
         // A root is proved to lie there; and the step, shorter than all that the region allows for, leaves no more than the
         // tolerance.
         // Of a rational surface the rounding of the step may be more, where the weight falls.
         let regular = !P::RATIONAL || local.is_regular_enough::<P::Flat>([du, dv], exact);
-        let lands = surface.strays([du, dv]) <= exact.tolerance * local.lightest::<P::Flat>([du, dv]) && regular;
+        let lands = local.is_linear::<P::Flat>(surface.strays([du, dv]), [du, dv], exact) && regular;
         if region.encloses(near) && lands {
             return Ok(Contraction::Done(Some(Place { at: next, local })));
         }
@@ -102,7 +103,7 @@ pub(crate) fn contract<P: Point>(
             let widths = smaller.widths();
             (0..2).all(|k| widths[k] > halves[k] * P::Scalar::from_f64(1.5))
         };
-        if strays <= exact.tolerance * local.lightest::<P::Flat>(halves) || smaller.as_ref().is_some_and(stays) {
+        if local.is_linear::<P::Flat>(bound, halves, exact) || smaller.as_ref().is_some_and(stays) {
             let off =
                 |next: [P::Parameter; 2], held: [P::Parameter; 2]| [next[0].minus(held[0]), next[1].minus(held[1])];
             let (mut local, mut next, held) = (local, next, region.nearest(next));
@@ -119,8 +120,12 @@ pub(crate) fn contract<P: Point>(
             }
             // A root that rounding has moved out of its region is where it is; one beyond the surface's edge is held there.
             let at = Region::WHOLE.nearest(next);
-            let on_it = local.may_hold(off(next, region.nearest(next)), &loose) && local.may_hold(off(next, at), exact);
-            return Ok(Contraction::Done(on_it.then_some(Place { at, local })));
+            if local.may_hold(off(next, region.nearest(next)), &loose) && local.may_hold(off(next, at), exact) {
+                return Ok(Contraction::Done(Some(Place { at, local })));
+            }
+            let on_edge = if local.at == held { local.on_edge(next, exact) } else { None };
+            let on_edge = on_edge.filter(|&at| local.may_hold(off(at, region.nearest(at)), &loose));
+            return Ok(Contraction::Done(on_edge.map(|at| Place { at, local })));
         }
         match smaller {
             Some(smaller) => region = smaller,

@@ -49,12 +49,19 @@ pub(crate) fn across<F: Flat>(degrees: Degrees, net: &[F], noise: &Noise<F::Scal
     let along = [x / length, y / length];
     let error = noise.error * (along[0].abs() + along[1].abs());
     let (mut low, mut high, mut thin) = (F::Scalar::INFINITY, F::Scalar::LEAST, true);
+    let three = F::Scalar::from_u32(3);
     for point in net {
-        let ([f, g], off) = (point.f_g(), error * point.weight());
+        let [f, g] = point.f_g();
         let distance = g * along[0] - f * along[1];
+        let off = if F::RATIONAL { error * point.weight() } else { F::Scalar::ZERO };
         (low, high) = (low.lesser(distance - off), high.greater(distance + off));
         // Not the tolerance, within which a cubic contact still is one root and no other.
-        thin &= distance.abs() <= off * F::Scalar::from_u32(3);
+        thin &= !F::RATIONAL || distance.abs() <= off * three;
+    }
+    // Of others all points are off by the same.
+    if !F::RATIONAL {
+        thin = low.abs().greater(high.abs()) <= error * three;
+        (low, high) = (low - error, high + error);
     }
     if low > F::Scalar::ZERO || high < F::Scalar::ZERO {
         return Across::Apart;
@@ -78,14 +85,6 @@ fn is_steady<F: Flat>(columns: usize, net: &[F], [x, y]: [F::Scalar; 2], noise: 
     [along_u, along_v].iter().any(|[low, high]| *low > F::Scalar::ZERO || *high < F::Scalar::ZERO)
 }
 
-/// How far the points of a region that can be told no closer pass the ray at most, by the measure of
-/// [`Local::distance`](crate::local::Local::distance). `error` is that of the region's net.
-#[inline(always)]
-pub(crate) fn allowed<S: Scalar>(exact: &Exactness<S>, error: S) -> S {
-    // A region is settled when its points are within four errors of a line through the ray.
-    exact.allowed() + error * S::from_u32(4)
-}
-
 /// A place on the ray, and what the ray does there at least.
 pub(crate) struct Met<A: Parameter> {
     pub(crate) place: Place<A>,
@@ -93,7 +92,7 @@ pub(crate) struct Met<A: Parameter> {
 }
 
 /// Of some places of a region whose points all are on the ray, or on a line in the surface that is, the one that the ray meets
-/// first, in its interval if one is; `None` if it passes all of them by more than is allowed. The error is that of points.
+/// first, in its interval if one is; `None` if it passes all of them by more than is allowed, and the net's error.
 pub(crate) fn first_met<P: Point, const N: usize>(
     surface: &Surface<'_, P>,
     planes: &Planes<P::Scalar>,
@@ -102,10 +101,9 @@ pub(crate) fn first_met<P: Point, const N: usize>(
     error: P::Scalar,
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Option<Met<P::Parameter>>, Limit> {
-    let allowed = allowed(exact, error);
-    let rounding = error * P::Scalar::from_u32(4) + planes.noise();
-    // In order of worth: whether it lies before the interval, or is held by no more than its net's error; whether it passes the
-    // ray by more than rounding, as where the surface leaves the ray slowly all within the tolerance; and its depth.
+    let allowed = exact.allowed() + error;
+    // In order of worth: whether it lies before the interval; whether it passes the ray by more than rounding, as where the surface
+    // leaves the ray slowly all within the tolerance; if it is held by no more than its net's error, its distance; and its depth.
     let mut least = None;
     let mut best = None;
     let (mut nearest, mut farthest) = (P::Scalar::INFINITY, P::Scalar::LEAST);
@@ -116,20 +114,35 @@ pub(crate) fn first_met<P: Point, const N: usize>(
         }
         let depth = planes.depth_on(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
         (nearest, farthest) = (nearest.lesser(depth), farthest.greater(depth));
-        let far = distance > exact.allowed();
-        let faults = [planes.is_before_interval(depth), far, distance > rounding];
-        if least.is_none_or(|least| (faults, depth) < least) {
-            (least, best) = (Some((faults, depth)), Some(place));
+        let faults = [planes.is_before_interval(depth), distance > exact.rounding + planes.noise()];
+        let rank = (faults, distance.greater(exact.allowed()), depth);
+        if least.is_none_or(|least| rank < least) {
+            (least, best) = (Some(rank), Some(place));
         }
     }
-    let contact = farthest - nearest > exact.size * P::Scalar::from_f64(CONTACT);
-    let incidence = if contact { Incidence::Contact } else { Incidence::Crossing };
-    Ok(best.map(|place| Met { place, incidence }))
+    let stretch = farthest - nearest;
+    let incidence = if stretch > exact.size * P::Scalar::from_f64(CONTACT) {
+        Incidence::Contact
+    } else if stretch > exact.allowed() * P::Scalar::from_u32(BESIDE) {
+        // Roots may be apart that cannot be told apart.
+        Incidence::Grazing
+    } else {
+        Incidence::Crossing
+    };
+    Ok(best.map(|place| {
+        // What is held by no more than its net's error may as well be a ray that all but meets the surface.
+        let held = place.local.distance() > exact.allowed();
+        Met { place, incidence: if held { incidence.max(Incidence::Grazing) } else { incidence } }
+    }))
 }
 
 /// A ray is in contact with a surface along a stretch longer than this share of the surface's size. Where it is shorter, it is
 /// that of a tangent to a curved surface, which rounding does not part from the surface at once.
 pub(crate) const CONTACT: f64 = 1.0 / 64.0;
+
+/// What lies apart along the ray by no more than so many times what is allowed across it may be one root: of a ray that is steeper
+/// than the inverse of this, it is. Larger takes roots for one that shallow rays have; smaller calls more of them grazing.
+pub(crate) const BESIDE: u32 = 64;
 
 /// The place that a few of Newton's steps lead to from a point of a region, as long as each brings the ray nearer: no farther
 /// from the region than [`REACH`] times its width. A root that lies beside the region, and is found from there too, is a better
@@ -244,7 +257,7 @@ pub(crate) fn on_line<P: Point>(
     let mut known = true;
     for place in [&middle, &first, &second] {
         let depth = planes.depth_on(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
-        let unknown = !(place.local.distance() <= allowed(exact, error));
+        let unknown = !(place.local.distance() <= exact.allowed() + error);
         known &= !unknown;
         inside |= !unknown && planes.t_in_interval(depth).is_some();
         before |= unknown || planes.is_before_interval(depth);
@@ -256,9 +269,7 @@ pub(crate) fn on_line<P: Point>(
     if (!inside && before && behind) || (followed && (!known || (inside && before))) {
         return Ok(None);
     }
-    let met = first_met(surface, planes, [middle, first, second], exact, error, basis)?;
-    // Roots that cannot be told apart are one that grazes.
-    Ok(met.map(|met| Met { incidence: met.incidence.max(Incidence::Grazing), ..met }))
+    first_met(surface, planes, [middle, first, second], exact, error, basis)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A projected surface near a point, to first order: what one step of Newton's method is made of.
 
-use crate::bernstein::{self, BasisView, Degrees, Full};
+use crate::bernstein::{self, BasisView, Degrees, Full, Jet};
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::parameter::Parameter;
 use crate::planes::Planes;
@@ -41,16 +41,16 @@ impl<S: Scalar> Exactness<S> {
     /// The sine below which an angle between ray and surface makes a hit grazing.
     #[inline(always)]
     pub(crate) fn graze(&self) -> S {
-        (self.tolerance / self.size).sqrt() * S::from_u32(4)
+        (self.tolerance / self.size).sqrt() * S::from_u32(GRAZE)
     }
 
     /// By how much a point of the projected net may be off: some three roundings of numbers below 4 times the coordinates; twice that,
     /// so that an edge which two surfaces share but for its last bits is lost by neither. The sides of regions round, too, and a
-    /// rational surface may move by its degree in roundings where a parameter moves by one.
+    /// rational surface may move by its degree in roundings where a parameter moves by two.
     #[inline(always)]
     pub(crate) fn of_net<F: Flat<Scalar = S>>(&self, degrees: Degrees) -> S {
         let both = u32::from(degrees.u) + u32::from(degrees.v);
-        let roundings = if F::RATIONAL { 8 + 4 * both } else { both.max(8) };
+        let roundings = if F::RATIONAL { 8 + both } else { both.max(8) };
         S::EPSILON * S::from_u32(roundings) * self.reach
     }
 
@@ -61,6 +61,10 @@ impl<S: Scalar> Exactness<S> {
         self.tolerance + self.rounding
     }
 }
+
+/// The sine of a grazing angle is at most so many times the square root of the tolerance's share of the surface. Larger calls more
+/// hits grazing, smaller leaves some clear ones less exact than their angle says.
+const GRAZE: u32 = 4;
 
 /// The projected surface near a point, to first order: what one step of Newton's method is made of.
 #[derive(Clone, Copy, Debug)]
@@ -73,9 +77,9 @@ pub(crate) struct Local<A: Parameter> {
     determinant: A::Scalar,
     /// The product of the derivatives' lengths.
     size: A::Scalar,
-    /// The weight at the point: all else is multiplied by it.
+    /// The weight at the point, by which all else is divided: products of several would vanish where it is small.
     pub(crate) weight: A::Scalar,
-    /// The weight's derivatives; 0 without weights.
+    /// The weight's derivatives, as shares of it; 0 without weights.
     slopes: [A::Scalar; 2],
 }
 
@@ -89,12 +93,18 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
         basis: &mut BasisView<'_, S>,
     ) -> Result<Self, Limit> {
         let jet = bernstein::jet(degrees, net, at, basis, |p| p).map_err(|Full| Limit::Scratch)?;
-        let (f_g, [fu, gu], [fv, gv]) = (jet.point.f_g(), jet.du.f_g(), jet.dv.f_g());
+        let Jet { mut point, mut du, mut dv } = jet;
+        let (weight, mut slopes) = (point.weight(), [S::ZERO; 2]);
+        if F::RATIONAL {
+            let inverse = S::ONE / weight;
+            (point, du, dv) = (point * inverse, du * inverse, dv * inverse);
+            // Of a point without weight that is constant.
+            slopes = [du.weight(), dv.weight()];
+        }
+        let (f_g, [fu, gu], [fv, gv]) = (point.f_g(), du.f_g(), dv.f_g());
         let determinant = fu * gv - gu * fv;
         let size = (fu.abs() + gu.abs()) * (fv.abs() + gv.abs());
-        // Of a point without weight that is constant.
-        let slopes = if F::RATIONAL { [jet.du.weight(), jet.dv.weight()] } else { [S::ZERO; 2] };
-        Ok(Local { at, f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight: jet.point.weight(), slopes })
+        Ok(Local { at, f_g, du: [fu, gu], dv: [fv, gv], determinant, size, weight, slopes })
     }
 
     /// The same as a step of Newton's method: counted, and told.
@@ -116,24 +126,23 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
     /// How far the point is from the ray: |f| + |g|.
     #[inline(always)]
     pub(crate) fn distance(&self) -> S {
-        self.residual() / self.weight
-    }
-
-    /// |f| + |g|, times the weight.
-    #[inline(always)]
-    pub(crate) fn residual(&self) -> S {
         let [f, g] = self.f_g;
         f.abs() + g.abs()
     }
 
+    /// The point in the two planes' system: f and g.
+    pub(crate) fn off(&self) -> [S; 2] {
+        self.f_g
+    }
+
     /// The point's distance from the ray in the direction of a unit vector of the two planes' system, and its derivatives by u
-    /// and v; all times the weight.
+    /// and v (of the numerator, over the weight).
     pub(crate) fn seen_along(&self, [x, y]: [S; 2]) -> (S, [S; 2]) {
         let along = |[f, g]: [S; 2]| f * x + g * y;
         (along(self.f_g), [along(self.du), along(self.dv)])
     }
 
-    /// Whether the ray is tangent, from the derivatives of the depth; see [`Incidence`](crate::ray::Incidence). A pole has no tangent plane,
+    /// Whether the ray is tangent, from the derivatives of the depth (of a rational surface over the weight); see [`Incidence`](crate::ray::Incidence). A pole has no tangent plane,
     /// and is not.
     #[inline(always)]
     pub(crate) fn is_tangent(&self, [depth_u, depth_v]: [S; 2], exact: &Exactness<S>) -> bool {
@@ -150,9 +159,12 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
     #[inline(always)]
     pub(crate) fn is_steep<F: Flat<Scalar = S, Parameter = A>>(&self, degrees: Degrees, exact: &Exactness<S>) -> bool {
         let twice = if F::RATIONAL { 8 } else { 2 };
-        let [deepest_u, deepest_v] = [degrees.u, degrees.v].map(|n| S::from_u32(twice * u32::from(n)) * exact.reach);
+        let reach = if F::RATIONAL { exact.reach / self.weight } else { exact.reach };
+        let [deepest_u, deepest_v] = [degrees.u, degrees.v].map(|n| S::from_u32(twice * u32::from(n)) * reach);
         let ([fu, gu], [fv, gv], c) = (self.du, self.dv, self.determinant.abs());
-        c >= exact.graze() * ((fu.abs() + gu.abs()) * deepest_v + (fv.abs() + gv.abs()) * deepest_u + c)
+        let all = (fu.abs() + gu.abs()) * deepest_v + (fv.abs() + gv.abs()) * deepest_u + c;
+        // By squares, since a small machine may take the root by a call. What vanishes or overflows is not seen to be steep.
+        c * c * exact.size > S::from_u32(GRAZE * GRAZE) * exact.tolerance * (all * all)
     }
 
     /// The step to where both distances would be 0; `None` if the Jacobian is singular to working precision.
@@ -173,22 +185,41 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
     }
 
     /// Whether rounding alone may make the determinant what it is: each of its four factors is off by some roundings of
-    /// coordinates below twice `reach` times the weight, not of its own size.
+    /// coordinates below twice `reach`, not of its own size.
     #[inline(always)]
     pub(crate) fn may_be_singular(&self, reach: S) -> bool {
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let lengths = fu.abs() + gu.abs() + (fv.abs() + gv.abs());
-        !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * reach * lengths * self.weight)
+        !(self.determinant.abs() > S::EPSILON * S::from_u32(32) * reach * lengths)
     }
 
-    /// The least weight that a surface may have no farther from here than by this step, or 0: to first order, and half of that.
+    /// The least weight that a surface may have no farther from here than by this step, or 0, as a share of that here: to first
+    /// order, and half of that.
     #[inline(always)]
-    pub(crate) fn lightest<F: Flat<Scalar = S, Parameter = A>>(&self, [du, dv]: [S; 2]) -> S {
+    fn lightest<F: Flat<Scalar = S, Parameter = A>>(&self, [du, dv]: [S; 2]) -> S {
         if !F::RATIONAL {
             return S::ONE;
         }
         let [by_u, by_v] = self.slopes;
-        (self.weight - (by_u * du).abs() - (by_v * dv).abs()).greater(S::ZERO) * S::HALF
+        (S::ONE - (by_u * du).abs() - (by_v * dv).abs()).greater(S::ZERO) * S::HALF
+    }
+
+    /// What is bounded times the weight, as [`Net::bend`](crate::surface::Net::bend) is, as it is here.
+    #[inline(always)]
+    pub(crate) fn unweighted<F: Flat<Scalar = S, Parameter = A>>(&self, bound: S) -> S {
+        if F::RATIONAL { bound / self.weight } else { bound }
+    }
+
+    /// Whether a surface that strays from its linear part here by no more than this, times the weight, does so by no more than the
+    /// tolerance all along a step.
+    #[inline(always)]
+    pub(crate) fn is_linear<F: Flat<Scalar = S, Parameter = A>>(
+        &self,
+        strays: S,
+        step: [S; 2],
+        exact: &Exactness<S>,
+    ) -> bool {
+        self.unweighted::<F>(strays) <= exact.tolerance * self.lightest::<F>(step)
     }
 
     /// Whether the step leads to within the tolerance as far as rounding is concerned, of which Taylor's theorem says nothing:
@@ -203,9 +234,8 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let lengths = fu.abs() + gu.abs() + (fv.abs() + gv.abs());
         let rounding = S::EPSILON * S::from_u32(32) * exact.reach;
-        // Distances are residuals over the weight, which may fall along the step.
-        let (here, there) = if F::RATIONAL { (self.weight, self.lightest::<F>(step)) } else { (S::ONE, S::ONE) };
-        self.residual() * rounding * lengths * here <= exact.allowed() * self.determinant.abs() * there
+        // The weight may fall along the step, by which distances grow.
+        self.distance() * rounding * lengths <= exact.allowed() * self.determinant.abs() * self.lightest::<F>(step)
     }
 
     /// How fast the root moves, in u and in v, if the ray's slopes change as fast as each of these: f and g at a fixed place on
@@ -215,7 +245,7 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
         if self.may_be_singular(reach) {
             return None;
         }
-        let share = distance * self.weight / self.determinant;
+        let share = distance / self.determinant;
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let rate = |[f, g]: [S; 2]| [(gv * f - fv * g) * share, (fu * g - gu * f) * share];
         let [first, second] = slopes;
@@ -223,12 +253,35 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
         Some([rate(first), rate(second)])
     }
 
-    /// How far in u and in v the inverse of the Jacobian carries an error of this length in f and g, times the weight.
+    /// How far in u and in v the inverse of the Jacobian carries an error of this length in f and g.
     #[inline(always)]
     pub(crate) fn inverse_bounds(&self, error: S) -> [S; 2] {
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let share = error / self.determinant.abs();
         [(fv.abs() + gv.abs()) * share, (fu.abs() + gu.abs()) * share]
+    }
+
+    /// Of a point on an edge from which a step leads beyond it: the place on the edge that the ray meets, if it passes the edge by no
+    /// more than is allowed. Where u and v lead all but the same way, as the ray sees it, rounding moves a root along the edge, and out
+    /// of it, by far more than the edge is off the ray; so the edge is followed alone. Then of two neighbours not both refuse a ray
+    /// between them.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn on_edge(&self, next: [A; 2], exact: &Exactness<S>) -> Option<[A; 2]> {
+        for k in 0..2 {
+            let free = 1 - k;
+            let ([fd, gd], [f, g]) = ([self.du, self.dv][free], self.f_g);
+            let step = -(fd * f + gd * g) / (fd * fd + gd * gd);
+            let left = (f + fd * step).abs() + (g + gd * step).abs();
+            let along = self.at[free].plus(step);
+            let is_beyond = next[k].held(A::ZERO, A::ONE) != next[k] && next[k].held(A::ZERO, A::ONE) == self.at[k];
+            if is_beyond && left <= exact.allowed() && along.held(A::ZERO, A::ONE) == along {
+                let mut place = self.at;
+                place[free] = along;
+                return Some(place);
+            }
+        }
+        (self.distance() <= exact.allowed()).then_some(self.at)
     }
 
     /// Whether a root may be held back by `off`, in u and v, from where the step leads: not judged by parameters, but by how
@@ -237,6 +290,6 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
     pub(crate) fn may_hold(&self, off: [S; 2], exact: &Exactness<S>) -> bool {
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let moved = off[0].abs() * (fu.abs() + gu.abs()) + off[1].abs() * (fv.abs() + gv.abs());
-        moved <= exact.allowed() * self.weight
+        moved <= exact.allowed()
     }
 }

@@ -152,9 +152,9 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
         // Ends: a fixed number of evaluations.
         for _ in 0..limits.newton_iterations {
             let local = Local::step_at(at, surface.net.degrees(), flat, self.basis, limits, work)?;
-            let residual = local.residual();
+            let residual = local.distance();
             // The residual before the Jacobian: at a pole the root is valid though the Jacobian is singular.
-            if residual <= noise * local.weight {
+            if residual <= noise {
                 return Ok(Some(Place { at, local }));
             }
             // Damping. A NaN counts as growth.
@@ -173,7 +173,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
             let next = [at[0].plus(du), at[1].plus(dv)];
             let on_surface = held(next);
             let off = [next[0].minus(on_surface[0]), next[1].minus(on_surface[1])];
-            if surface.strays([du, dv]) <= exact.tolerance * local.lightest::<P::Flat>([du, dv])
+            if local.is_linear::<P::Flat>(surface.strays([du, dv]), [du, dv], exact)
                 && local.is_regular_enough::<P::Flat>([du, dv], exact)
             {
                 // Converged; what is left to see is whether the root lies on the surface or beyond its edge. Of a root on
@@ -186,7 +186,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
                 // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
                 // far along the surface: one more, from the edge, says on which side of it the root lies.
                 if at_edge {
-                    return Ok(None);
+                    return Ok(local.on_edge(next, exact).map(|at| Place { at, local }));
                 }
                 at_edge = true;
                 (at, last) = (on_surface, P::Scalar::INFINITY);

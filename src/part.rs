@@ -2,7 +2,7 @@
 
 use crate::bernstein::{Degrees, Direction, Full};
 use crate::casteljau;
-use crate::clip::Noise;
+use crate::clip::{Noise, chords, corners};
 use crate::parameter::Parameter;
 use crate::point::Flat;
 use crate::region::Region;
@@ -105,15 +105,19 @@ impl<'a, F: Flat> Part<'a, F> {
     /// The same if it is many times longer: as of rulings seen end on, to halve the other is to see the same twice.
     #[cold]
     pub(crate) fn much_longer(&self) -> Option<Direction> {
-        let [along_u, along_v] = self.lengths().map(|length| length * F::Scalar::from_f64(MUCH));
-        let [u, v] = self.lengths();
-        if along_u > v {
-            Some(Direction::U)
-        } else if along_v > u {
-            Some(Direction::V)
-        } else {
-            None
-        }
+        let much = |[u, v]: [F::Scalar; 2]| {
+            let times = F::Scalar::from_u32(MUCH);
+            if u > v * times {
+                Some(Direction::U)
+            } else if v > u * times {
+                Some(Direction::V)
+            } else {
+                None
+            }
+        };
+        // By the corners first, which cost less than all points; they may be in one place, as those of a loop.
+        let length = |[f, g]: [F::Scalar; 2]| f.abs() + g.abs();
+        much(chords(corners(self.degrees, self.net)).map(length)).and_then(|_| much(self.lengths()))
     }
 
     /// Whether one of the two edges along a parameter is a point, to rounding.
@@ -130,7 +134,8 @@ impl<'a, F: Flat> Part<'a, F> {
         let point = |[first, stride, count]: [usize; 3]| {
             let at = |k: usize| self.net.get(first + k * stride).map_or([F::Scalar::ZERO; 2], |point| point.position());
             let [f, g] = at(0);
-            let off = self.error * F::Scalar::from_u32(4);
+            // What is settled as seen across any line, see `clip`, or else the other parameter would be halved for ever.
+            let off = self.error;
             (1..count).map(at).all(|[h, i]| (h - f).abs() <= off && (i - g).abs() <= off)
         };
         point(edge(0)) || point(edge(1))
@@ -161,9 +166,9 @@ impl<'a, F: Flat> Part<'a, F> {
     }
 }
 
-/// A net is halved across its longer side where that is this many times, inverted, the other. Larger halves sides that a clip may
-/// yet shorten, smaller those that say nothing.
-const MUCH: f64 = 1.0 / 16.0;
+/// A net is halved across its longer side where that is so many times the other. Smaller halves sides that a clip may yet shorten,
+/// larger those that say nothing.
+const MUCH: u32 = 16;
 
 /// The largest |f| or |g| of a projected net's points.
 #[inline(always)]

@@ -223,7 +223,7 @@ impl<S: Scalar> Planes<S> {
         Ok((place - self.ordered[0]) * self.forward)
     }
 
-    /// The derivatives in u and v of the depth of a net's point, times its weight.
+    /// The derivatives in u and v of the depth of a net's point.
     pub(crate) fn depth_derivatives<P: Point<Scalar = S>>(
         &self,
         net: &Net<'_, P>,
@@ -232,8 +232,8 @@ impl<S: Scalar> Planes<S> {
     ) -> Result<[S; 2], Full> {
         let [steep, ..] = self.axes;
         let Jet { point, du, dv } = net.jet_at(at, basis)?;
-        let place = steep.of(&point.position());
-        let along = |d: P, weight: S| (steep.of(&d.weighted_position()) - place * weight) * self.forward;
+        let (place, forward) = (steep.of(&point.position()), self.forward / point.weight());
+        let along = |d: P, weight: S| (steep.of(&d.weighted_position()) - place * weight) * forward;
         // Of a plain point the weight is constant, and its derivative 0.
         let weight = |d: P| if P::RATIONAL { d.weight() } else { S::ZERO };
         Ok([along(du, weight(du)), along(dv, weight(dv))])

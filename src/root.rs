@@ -97,7 +97,7 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Place<A> {
                 step.iter().all(|c| c.abs() <= S::EPSILON * S::from_u32(4)) && !local.may_be_singular(exact.reach)
             };
             if let Some([du, dv]) = local.step().filter(unsaid) {
-                depth += (along[0] * du + along[1] * dv) / local.weight;
+                depth += along[0] * du + along[1] * dv;
             }
         }
         let [u, v] = at;

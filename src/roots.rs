@@ -4,7 +4,7 @@
 //! point, in every region that touches the edge.
 
 use crate::bernstein::BasisView;
-use crate::graze::CONTACT;
+use crate::graze::{BESIDE, CONTACT};
 use crate::limits::Limit;
 use crate::local::{Exactness, Local};
 use crate::parameter::Parameter;
@@ -23,8 +23,6 @@ pub(crate) struct Seen<'a, 'm, P: Point> {
     /// The surface's projected net.
     pub(crate) whole: &'a [P::Flat],
     pub(crate) exact: &'a Exactness<P::Scalar>,
-    /// How far the surface may pass the ray and count as meeting it, by the measure of [`Local::distance`].
-    pub(crate) allowed: P::Scalar,
 }
 
 /// What a root is to those seen before.
@@ -66,7 +64,7 @@ impl<P: Point> Seen<'_, '_, P> {
         basis: &mut BasisView<'_, P::Scalar>,
     ) -> Result<Option<Sighting<P::Scalar>>, Limit> {
         // A tolerance across the ray is more along it.
-        let near = self.exact.allowed() * P::Scalar::from_u32(64);
+        let near = self.exact.allowed() * P::Scalar::from_u32(BESIDE);
         for old in roots.iter_mut() {
             // On a straight line that the ray follows all points are one root; those outside the interval must not stand for
             // the ones within.
@@ -107,7 +105,7 @@ impl<P: Point> Seen<'_, '_, P> {
         for share in [P::Scalar::from_f64(0.381), P::Scalar::HALF, P::Scalar::from_f64(0.803)] {
             let at = [a.u.plus(b.u.minus(a.u) * share), a.v.plus(b.v.minus(a.v) * share)];
             let degrees = self.surface.net.degrees();
-            if !(Local::at(at, degrees, self.whole, basis)?.distance() <= self.allowed) {
+            if !(Local::at(at, degrees, self.whole, basis)?.distance() <= self.exact.allowed()) {
                 return Ok(false);
             }
         }

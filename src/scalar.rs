@@ -125,10 +125,19 @@ pub trait Vector3:
     /// The components without their signs.
     fn abs(self) -> Self;
 
-    /// Length, scaled by the largest component first, so that it neither overflows nor vanishes on the way.
+    /// Whether, with this largest |component|, squares neither overflow nor lose what counts.
+    #[inline(always)]
+    fn has_squares(largest: Self::Scalar) -> bool {
+        let (square, epsilon) = (largest * largest, Self::Scalar::EPSILON);
+        square * (epsilon * epsilon) > Self::Scalar::MIN_POSITIVE && square < Self::Scalar::MAX * Self::Scalar::EPSILON
+    }
+    /// Length; scaled by the largest component first where it would overflow or vanish on the way.
     #[inline]
     fn length(self) -> Self::Scalar {
         let largest = self.largest();
+        if Self::has_squares(largest) {
+            return self.dot(self).sqrt();
+        }
         if largest > Self::Scalar::ZERO && largest < Self::Scalar::INFINITY {
             let exponent = largest.binary_exponent();
             let [x, y, z] = self.to_array().map(|c| c.times_power_of_two(-exponent));
@@ -141,6 +150,10 @@ pub trait Vector3:
     #[inline]
     fn unit(self) -> Self {
         let largest = self.largest();
+        if Self::has_squares(largest) {
+            let length = self.dot(self).sqrt();
+            return Self::from_array(self.to_array().map(|c| c / length));
+        }
         if !(largest > Self::Scalar::ZERO && largest < Self::Scalar::INFINITY) {
             return Self::ZERO;
         }

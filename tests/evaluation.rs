@@ -184,7 +184,7 @@ fn a_basis_too_small_says_so_and_unrolled_degrees_need_none() {
         let points: Vec<Plain<f64>> = lower(&some_surface([degree; 2], false, 1), 1.0);
         let net = Net::new(degree, degree, &points).unwrap();
         assert!(net.jet(0.5, 0.5, &mut Basis::<f64, 0>::new().view()).is_ok());
-        assert_eq!(net.normal(0.5, 0.5, &mut small.view()).is_ok(), degree == 2);
+        assert!(net.normal(0.5, 0.5, &mut Basis::<f64, 0>::new().view()).is_ok());
     }
     let mut part = heapless::Vec::<Plain<f64>, 15>::new();
     let points: Vec<Plain<f64>> = lower(&some_surface([3, 3], false, 1), 1.0);

@@ -53,6 +53,8 @@ pub struct Truth {
     /// Where the ray enters and leaves within so little depth that an answer may take it for a graze: the root at which it
     /// leaves. An answer that says so may name any point from the closest root up to there.
     pub leaves: Option<f64>,
+    /// The cosine between ray and normal at the closest root; `None` where it is not known, and the normal of an answer is asked.
+    pub cosine: Option<f64>,
     /// Whether the ray lies in the surface from the closest root on: that root is then as sharp as the surface's outline, and
     /// its angle to the surface excuses nothing.
     pub contact: bool,
@@ -69,6 +71,7 @@ impl From<&Verdict> for Truth {
             open: verdict.unresolved > 0 && verdict.margin == 0.0,
             margin: verdict.margin,
             size: verdict.roots.first().map_or(0.0, |root| root.unit),
+            cosine: verdict.roots.first().map(|root| root.cosine),
             ..Truth::default()
         }
     }
@@ -162,7 +165,8 @@ fn is_near(found: &Found, t: f64, truth: &Truth, direction: [f64; 3], size: f64,
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let speed = dot(direction, direction).sqrt();
     // Where there is no normal, nothing excuses more than straight on.
-    let cosine = found.normal.shown().map_or(1.0, |normal| dot(normal, direction).abs() / speed);
+    let of_answer = || found.normal.shown().map_or(1.0, |normal| dot(normal, direction).abs() / speed);
+    let cosine = truth.cosine.filter(|&cosine| cosine > 0.0).unwrap_or_else(of_answer);
     let cosine = if truth.contact { OUTLINE } else { cosine };
     let allowed = (allowance.across / cosine).min(allowance.most) * size;
     let last = truth.leaves.filter(|_| found.incidence != Incidence::Crossing).unwrap_or(t);

@@ -44,13 +44,13 @@ fn allowed(family: &str, method: Method) -> u32 {
         // them takes as many steps as one around two, and they fall together over a third of the digits.
         ("grazing-cubic", Method::Clipping | Method::ClippingCoherent) => 32,
         // Two clips settle a hit of a plane; a ray in it is followed to where that begins, piece by piece.
-        ("grazing-plane", Method::Clipping | Method::ClippingCoherent) => 150,
+        ("grazing-plane", Method::Clipping | Method::ClippingCoherent) => 160,
         // Beside a pole the one parameter is clipped toward it, a third at a time, while the other cannot be.
-        ("poles", _) => 20,
+        ("poles", _) => 24,
         (_, Method::Clipping | Method::ClippingCoherent) => 10,
         // A hit of a plane is one step, by a determinant without error; of a small one each step brings some digits, and none
         // is believed before they are enough.
-        ("grazing-plane", _) => 300,
+        ("grazing-plane", _) => 350,
         // A hit is two steps in one patch; of a fold one patch is clipped, and then the surface.
         (_, _) => 200,
     }
@@ -83,18 +83,13 @@ fn a_graze_takes_little_more_work_than_a_hit() {
 }
 
 /// What does not hold yet, and why.
-const SHORT: [&str; 8] = [
+const SHORT: [&str; 5] = [
     // `f32` holds so few digits beside such weights that the truth of many rays changes by rounding alone.
     "weights-falling/f32: % of the rays are not judged",
     "weights-graded/f32: % of the rays are not judged",
     "weights-any/f32: % of the rays are not judged",
     "tips/f32: % of the rays are not judged",
     "slivers/f32: % of the rays are not judged",
-    // A pipe no thicker than the tolerance of a surface as long as it is met early, by the edges of its arcs.
-    "thin-pipes/f32: judged rays lost",
-    // Along some rulings t is later than where the contact begins.
-    "contact/f32: judged rays lost",
-    "contact/f64: judged rays lost",
 ];
 
 /// Whether a line tells of what does not hold yet.
@@ -118,7 +113,6 @@ fn what_must_hold_holds_of_any_seed() {
             let rows = family(hard, precision, &plan, |_| true);
             // In f64 the proofs leave nothing to the paper's rule, by any method.
             let lost = rows.iter().filter(|row| row.precision == Precision::F64 && row.score.lost() > 0);
-            let lost = lost.filter(|row| row.family != "contact");
             let lost = lost.map(|row| format!("{} {}: {:?}", row.family, row.method.name(), row.score));
             let broken = rows.iter().flat_map(|row| broken(row, &families)).filter(|line| !is_short(line));
             broken.chain(lost).collect::<Vec<_>>()

@@ -101,7 +101,7 @@ fn what_varies_by_less_than_the_tolerance_is_settled() {
 fn lines_are_never_near_parallel() {
     let corners = |u: [f64; 2], v: [f64; 2]| [[0.0, 0.0], u, v, [u[0] + v[0], u[1] + v[1]]];
     let angle = |u: [f64; 2], v: [f64; 2]| {
-        let [a, b] = [Direction::U, Direction::V].map(|direction| normal(corners(u, v), direction));
+        let [a, b] = [Direction::U, Direction::V].map(|direction| normal::<Tuple<f64, 2>>(corners(u, v), direction));
         let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
         cross.abs().atan2(dot.abs()).to_degrees()
     };
@@ -118,11 +118,11 @@ fn lines_are_never_near_parallel() {
         assert!((angle(u, v) - 90.0).abs() < 1e-9, "{u:?} {v:?}: {}", angle(u, v));
     }
     // Others are the chords' own, and follow them exactly.
-    assert_eq!(normal(corners([1.0, 0.0], [1.0, 0.5]), Direction::U), [-1.0, 2.0]);
+    assert_eq!(normal::<Tuple<f64, 2>>(corners([1.0, 0.0], [1.0, 0.5]), Direction::U), [-1.0, 2.0]);
     assert!((angle([1.0, 0.0], [1.0, 0.2]) - 0.2_f64.atan().to_degrees()).abs() < 1e-9);
     // Each spread line stays on the side of its own chord.
-    let [a, b] = [Direction::U, Direction::V].map(|d| normal(corners([1.0, 0.0], [1.0, 0.01]), d));
-    let [c, d] = [Direction::U, Direction::V].map(|d| normal(corners([1.0, 0.0], [1.0, -0.01]), d));
+    let [a, b] = [Direction::U, Direction::V].map(|d| normal::<Tuple<f64, 2>>(corners([1.0, 0.0], [1.0, 0.01]), d));
+    let [c, d] = [Direction::U, Direction::V].map(|d| normal::<Tuple<f64, 2>>(corners([1.0, 0.0], [1.0, -0.01]), d));
     assert!(a[0] * b[1] - a[1] * b[0] < 0.0 && c[0] * d[1] - c[1] * d[0] > 0.0, "{a:?} {b:?} {c:?} {d:?}");
 }
 

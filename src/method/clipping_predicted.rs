@@ -194,7 +194,7 @@ impl<'s, 'm, P: Point> Search<'_, 's, 'm, P> {
         slot.keep(&point, &local, ray, stamp);
         *best = Some(Best { root: point, surface, kept: true });
         P::Scalar::tell(|| Event::Testing);
-        let alone = Alone::new(&point, &local, of_window.shape.bend, ray.planes.reach());
+        let alone = Alone::new::<P::Flat>(&point, &local, of_window.shape.bend, ray.planes.reach());
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
         let claim = Claim::of(&point, surface, &Exactness::of(&of_window, &ray.planes, limits));

@@ -148,18 +148,18 @@ fn led<T, E>(
     work: &mut Work,
     mut search: impl FnMut(u32, &mut bool, &mut Work) -> Result<T, E>,
 ) -> Result<T, E> {
-    let mut spent = Work::default();
+    let mut spent: Option<Work> = None;
     // Ends: a second search, whose stamp recalls nothing, is the last.
     loop {
         let mut recalled = false;
         let answer = search(stamp, &mut recalled, work);
-        if set {
+        if let (true, Some(spent)) = (set, &spent) {
             *work = spent.plus(work);
         }
         if !(recalled && answer.is_err()) {
             return answer;
         }
-        (stamp, spent) = (0, *work);
+        (stamp, spent) = (0, Some(*work));
     }
 }
 

@@ -173,7 +173,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         slot.keep(&point, &local, ray, stamp);
         *best = Some(Best { root: point, surface, kept: true });
         P::Scalar::tell(|| Event::Testing);
-        let alone = Alone::new(&point, &local, solver.surface.shape.bend, planes.reach());
+        let alone = Alone::new::<P::Flat>(&point, &local, solver.surface.shape.bend, planes.reach());
         // Patches of the point's own sheet, where it is proved to be the only point, need no test.
         let exempt = |number: u32, patch: &Patch<P::Scalar>| number == surface && alone.within(patch.domain().bounds());
         let claim = Claim::of(&point, surface, &solver.exact);

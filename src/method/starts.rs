@@ -103,7 +103,8 @@ fn is_decided<P: Point>(
         return Ok(true);
     }
     let local = solver.local([root.u, root.v], work)?;
-    Ok(Alone::new(root, &local, solver.surface.shape.bend, solver.planes.reach()).within(patch.domain().bounds()))
+    Ok(Alone::new::<P::Flat>(root, &local, solver.surface.shape.bend, solver.planes.reach())
+        .within(patch.domain().bounds()))
 }
 
 /// Tries the starts of a patch in turn until one converges; `None`, counted as unresolved, if none does.

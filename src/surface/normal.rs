@@ -5,19 +5,19 @@
 //! (a, b) from (u, v) with vectors for coefficients; all ways lead to the same tangent plane if all coefficients are parallel.
 
 use super::{Net, V};
-use crate::bernstein::{BasisView, Direction, Full};
+use crate::bernstein::{BasisView, Direction, Full, Jet};
 use crate::parameter::Parameter;
 use crate::point::Point;
 use crate::scalar::{Scalar, Vector3};
 
 /// What rounding is measured by: how large a net is.
 struct Extent<S> {
-    /// The largest |coordinate difference| between a control point and the first one.
-    size: S,
+    /// By how much a component of a first derivative may be off, where the weight is that of the heaviest point.
+    off: S,
     /// The largest |coordinate|.
     reach: S,
-    /// The largest weight.
-    weight: S,
+    /// The largest weight; 1 without weights.
+    heaviest: S,
     /// What coordinates are multiplied by 2 to the power of, so that products of derivatives neither overflow nor vanish.
     exponent: i32,
 }
@@ -60,25 +60,37 @@ impl<P: Point> Net<'_, P> {
         basis: &mut BasisView<'_, P::Scalar>,
     ) -> Result<Option<[P::Scalar; 3]>, Full> {
         let extent = self.extent();
-        let here = self.nearby([u, v], &extent, basis)?;
-        let [su, sv] = here.first;
-        let regular = su.cross(sv);
-        if regular.largest() > here.off[1] * su.largest().greater(sv.largest()) {
+        let Jet { point, du, dv } = self.jet(u, v, basis)?;
+        let (inverse, place) = (P::Scalar::ONE / point.weight(), V::<P>::from_array(point.position()));
+        let [su, sv] = [du, dv].map(|d| {
+            let along = V::<P>::from_array(d.weighted_position());
+            if P::RATIONAL { (along - place * d.weight()) * inverse } else { along }
+        });
+        let (regular, longest) = (su.cross(sv), su.largest().greater(sv.largest()));
+        let length = regular.largest();
+        // What overflows, or vanishes by underflow, is left to the careful way.
+        if length > extent.off * (extent.heaviest * inverse) * longest && length.is_finite() {
             return Ok(unit::<P>(regular));
         }
-        self.limit_of_normals([u, v], &here, &extent, basis)
+        self.limit_of_normals([u, v], &extent, basis)
     }
 
-    /// The same where ∂S/∂u × ∂S/∂v vanishes.
+    /// The same where ∂S/∂u × ∂S/∂v vanishes, or is too large or small a number.
     #[cold]
     #[inline(never)]
     fn limit_of_normals(
         &self,
         at: [P::Scalar; 2],
-        here: &Nearby<P>,
         extent: &Extent<P::Scalar>,
         basis: &mut BasisView<'_, P::Scalar>,
     ) -> Result<Option<[P::Scalar; 3]>, Full> {
+        let extent = &extent.scaled();
+        let here = self.nearby(at, extent, basis)?;
+        let [su, sv] = here.first;
+        let regular = su.cross(sv);
+        if regular.largest() > here.off[1] * su.largest().greater(sv.largest()) {
+            return Ok(unit::<P>(regular));
+        }
         let Some(limit) = here.limit(at.map(|c| P::Scalar::HALF - c)).filter(|limit| here.touches(limit)) else {
             return Ok(None);
         };
@@ -128,18 +140,11 @@ impl<P: Point> Net<'_, P> {
         }
         let vector = |p: P| V::<P>::from_array(p.weighted_position());
         let [[s, sv, svv], [su, suv, _], [suu, _, _]] = sums;
-        let degree = P::Scalar::from_u32(u32::from(self.degrees.u.max(self.degrees.v)));
         let scaled = |v: V<P>| V::<P>::from_array(v.to_array().map(|c| c.times_power_of_two(extent.exponent)));
-        let [size, reach] = [extent.size, extent.reach].map(|c| c.times_power_of_two(extent.exponent));
-        // Of first derivatives what is below this share of the size is rounding: a few dozen operations went into each. So it is
-        // of a place that is nearer to a collapsed edge than roots are found. Control points are themselves off by the rounding
-        // of their coordinates.
-        let share = (P::Scalar::EPSILON * P::Scalar::from_u32(64)).greater(P::Scalar::from_f64(4e-13));
         let four = P::Scalar::from_u32(4);
-        let off = share * size + P::Scalar::EPSILON * four * degree * reach;
         let offs = |weights: P::Scalar| {
-            let first = off * weights;
-            [first * four, first, first * weights * four * degree]
+            let first = extent.off * weights;
+            [first * four, first, first * weights * four * self.highest_degree()]
         };
         if !P::RATIONAL {
             return Ok(Nearby {
@@ -162,25 +167,44 @@ impl<P: Point> Net<'_, P> {
             point: scaled(point),
             first: [d_u, d_v].map(scaled),
             second: [d_uu, d_uv, d_vv].map(scaled),
-            off: offs(extent.weight * inverse),
+            off: offs(extent.heaviest * inverse),
         })
     }
 
     /// How large the net is.
     fn extent(&self) -> Extent<P::Scalar> {
         let first = V::<P>::from_array(self.corners()[0].position());
-        let nothing = Extent { size: P::Scalar::ZERO, reach: P::Scalar::ZERO, weight: P::Scalar::ZERO, exponent: 0 };
-        let extent = self.points.iter().fold(nothing, |extent, p| {
+        let (mut size, mut reach) = (P::Scalar::ZERO, P::Scalar::ZERO);
+        let mut heaviest = if P::RATIONAL { P::Scalar::ZERO } else { P::Scalar::ONE };
+        for p in self.points {
             let point = V::<P>::from_array(p.position());
-            Extent {
-                size: extent.size.greater((point - first).largest()),
-                reach: extent.reach.greater(point.largest()),
-                weight: extent.weight.greater(p.weight()),
-                exponent: 0,
+            size = size.greater((point - first).largest());
+            reach = reach.greater(point.largest());
+            if P::RATIONAL {
+                heaviest = heaviest.greater(p.weight());
             }
-        });
-        let some = extent.reach > P::Scalar::ZERO && extent.reach.is_finite();
-        Extent { exponent: if some { -extent.reach.binary_exponent() } else { 0 }, ..extent }
+        }
+        // Of first derivatives what is below this share of the size is rounding: a few dozen operations went into each. So it is
+        // of a place that is nearer to a collapsed edge than roots are found. Control points are themselves off by the rounding
+        // of their coordinates.
+        let share = (P::Scalar::EPSILON * P::Scalar::from_u32(64)).greater(P::Scalar::from_f64(4e-13));
+        let off = share * size + P::Scalar::EPSILON * P::Scalar::from_u32(4) * self.highest_degree() * reach;
+        Extent { off, reach, heaviest, exponent: 0 }
+    }
+
+    /// The higher one of its degrees.
+    fn highest_degree(&self) -> P::Scalar {
+        P::Scalar::from_u32(u32::from(self.degrees.u.max(self.degrees.v)))
+    }
+}
+
+impl<S: Scalar> Extent<S> {
+    /// In units in which no coordinate is above 1.
+    fn scaled(&self) -> Self {
+        let some = self.reach > S::ZERO && self.reach.is_finite();
+        let exponent = if some { -self.reach.binary_exponent() } else { 0 };
+        let [off, reach] = [self.off, self.reach].map(|c| c.times_power_of_two(exponent));
+        Extent { off, reach, exponent, ..*self }
     }
 }
 

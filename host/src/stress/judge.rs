@@ -66,12 +66,16 @@ impl<'c> Judge<'c> {
         let allowance = Allowance { across: across.max(blur / size), most };
         let mut agreement = Agreement::default();
         agreement.add(outcome, truth, ray.direction, size, &allowance);
-        self.is_judged(truth) && agreement.wrong + agreement.missed + agreement.phantom > 0
+        self.is_judged(truth, ray) && agreement.wrong + agreement.missed + agreement.phantom > 0
     }
 
-    /// Whether the truth of a ray is far enough from any other.
-    pub(super) fn is_judged(&self, truth: &Truth) -> bool {
-        !truth.open && truth.margin >= truth::least_margin(self.precision)
+    /// Whether the truth of a ray is far enough from any other: also from what the rounding of coordinates as large as the ray's
+    /// makes of it.
+    pub(super) fn is_judged(&self, truth: &Truth, ray: &RayLine) -> bool {
+        // A margin may be a share of the size of any surface that is nearly hit. What is clear by far is judged all the same.
+        let rounding = self.slack(0.0, ray) / self.sizes.iter().copied().fold(self.diagonal, f64::min);
+        let least = truth::least_margin(self.precision) + rounding;
+        !truth.open && truth.margin >= least.min(truth::clear_margin(self.precision))
     }
 
     /// Whether it is so far from any other that there is no excuse for giving the ray up.
@@ -114,7 +118,7 @@ impl<'c> Judge<'c> {
     pub(super) fn differences(&self, outcomes: &[Outcome], others: &[Outcome]) -> u64 {
         let pairs = outcomes.iter().zip(others).zip(self.truths.iter().zip(self.rays));
         let differ = pairs.filter(|((outcome, other), (truth, ray))| {
-            if !self.is_judged(truth) {
+            if !self.is_judged(truth, ray) {
                 return false;
             }
             let (closest, size) = match other {

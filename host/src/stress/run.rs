@@ -250,7 +250,7 @@ fn add(judge: &Judge, answers: &Answers, score: &mut Score) {
                 score.residual = score.residual.max(off / judge.size_of(found.surface));
             }
         }
-        if !judge.is_judged(truth) {
+        if !judge.is_judged(truth, ray) {
             score.unjudged += 1;
             continue;
         }

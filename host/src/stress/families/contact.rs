@@ -141,16 +141,19 @@ fn discs(draw: &mut Draw, rays: usize) -> Vec<Case> {
     cases.to_vec()
 }
 
-/// A case of rays along rulings, which all begin at t = 1 or end there, and go on to t = 2: from `first` to `second` of a ruling, or
-/// back.
+/// A case of rays along rulings, from t = 1 at the first of two points to t = 2 at the second.
 fn rulings(draw: &mut Draw, surface: Model, rays: usize, ruling: impl Fn(&mut Draw) -> [DVec3; 2]) -> Case {
     let lines = (0..rays).map(|_| {
         let [a, b] = ruling(draw);
-        let [a, b] = *draw.pick(&[[a, b], [b, a]]);
         ray(a - (b - a), b - a)
     });
     let lines: Vec<RayLine> = lines.collect();
     Case::of_form(surface, lines, |_, _| along(Some(1.0)))
+}
+
+/// Two points in either order.
+fn either(draw: &mut Draw, [a, b]: [DVec3; 2]) -> [DVec3; 2] {
+    *draw.pick(&[[a, b], [b, a]])
 }
 
 /// A ruled surface between two curves of control points.
@@ -176,11 +179,14 @@ fn contact(draw: &mut Draw) -> Vec<Case> {
     let round = cylinder([0.0; 3], 0.75, 1.5);
     cases.push(rulings(draw, round, share / 2, |draw| {
         let side = quarter(draw) * 0.75;
-        [side - DVec3::Z * 0.75, side + DVec3::Z * 0.75]
+        either(draw, [side - DVec3::Z * 0.75, side + DVec3::Z * 0.75])
     }));
     let cone = Curve::segment(1, [1.0, 0.0], [0.0, 1.0]);
     let cone = Model::numbered(revolve(&cone, &Curve::circle(Arcs::Rational, 0.0, 360.0, 4)));
-    cases.push(rulings(draw, cone, share / 2, |draw| [quarter(draw), DVec3::Z]));
+    cases.push(rulings(draw, cone, share / 2, |draw| {
+        let on = quarter(draw);
+        either(draw, [on, DVec3::Z])
+    }));
     // Over the parabola (u, u²), u from -1 to 1.
     let parabola = |s: f64| DVec3::new(2.0 * s - 1.0, (2.0 * s - 1.0) * (2.0 * s - 1.0), 0.0);
     let base = [DVec3::new(-1.0, 1.0, 0.0), DVec3::new(0.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)];
@@ -188,11 +194,15 @@ fn contact(draw: &mut Draw) -> Vec<Case> {
     let wall = single(ruled(&base, &base.map(|p| p + up)));
     cases.push(rulings(draw, wall, share / 2, |draw| {
         let on = parabola(exact_parameter(draw));
-        [on, on + up]
+        either(draw, [on, on + up])
     }));
     let tent = single(ruled(&base, &[apex; 3]));
-    cases.push(rulings(draw, tent, share / 2, |draw| [parabola(exact_parameter(draw)), apex]));
-    // The tangents of (s, s², s³), each as long as the derivative.
+    cases.push(rulings(draw, tent, share / 2, |draw| {
+        let on = parabola(exact_parameter(draw));
+        either(draw, [on, apex])
+    }));
+    // The tangents of (s, s², s³), each as long as the derivative, toward the curve: behind it a tangent is left by the other sheet
+    // as slowly as a cube, so that rounding moves where a ray that comes from there meets the surface.
     let cubic = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(2.0, 1.0, 0.0), DVec3::new(3.0, 3.0, 3.0)];
     // Control points of c, times 3, and of c' raised to degree 3, times 3.
     let derivative = [DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 2.0, 3.0)];
@@ -207,7 +217,7 @@ fn contact(draw: &mut Draw) -> Vec<Case> {
     cases.push(rulings(draw, developable, share, |draw| {
         let s = exact_parameter(draw);
         let on = 3.0 * DVec3::new(s, s * s, s * s * s);
-        [on, on + 3.0 * DVec3::new(1.0, 2.0 * s, 3.0 * s * s)]
+        [on + 3.0 * DVec3::new(1.0, 2.0 * s, 3.0 * s * s), on]
     }));
     // A plane with a ray in it that another surface stops before.
     let square = parallelogram([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);

@@ -56,6 +56,10 @@ fn through(model: &Model, ray: &RayLine, precision: Precision) -> Truth {
     if !(inside(first) && inside(second)) {
         return open;
     }
+    // The normal there, and the ray.
+    let [y, z] = [1, 2].map(|k| (ray.origin[k] + first * ray.direction[k]) / half_widths[k - 1].powi(2));
+    let [dx, dy, dz] = ray.direction;
+    let cosine = (y * dy + z * dz).abs() / (y.hypot(z) * dx.hypot(dy).hypot(dz));
     let thin = half_widths.iter().any(|half| 2.0 * half < clear_margin(precision) * size);
     Truth {
         closest: Some(first),
@@ -63,6 +67,7 @@ fn through(model: &Model, ray: &RayLine, precision: Precision) -> Truth {
         margin: 1.0,
         size,
         leaves: Some(second).filter(|_| thin),
+        cosine: Some(cosine),
         ..Truth::default()
     }
 }
