@@ -4,7 +4,6 @@
 //! gives views of them again. Only the stages that a method needs are built: see [`Stages::of`].
 
 use patchray::bernstein::MAX_DEGREE;
-use patchray::frame::{Aabb, exact_origin};
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::{Plain, Point, Weighted};
@@ -19,10 +18,13 @@ use crate::scene::model::{Model, ModelSurface};
 use crate::scene::trace::Method;
 
 mod error;
+mod place;
 mod view;
 mod worst_case;
 
 pub use error::LowerError;
+pub use place::Place;
+use place::{origin_of, relative};
 
 /// One more than the highest degree: the capacity of the scratch, so that it serves every valid surface.
 pub const ORDER: usize = MAX_DEGREE + 1;
@@ -32,14 +34,8 @@ pub const NET: usize = ORDER * ORDER;
 
 /// A kernel point that can be made from a file's numbers.
 pub trait FromFile: Point {
-    /// The point `[x, y, z, w]` of a file, rounded to this precision, and then relative to `origin`; the weight is not
-    /// multiplied in.
+    /// The point `[x, y, z, w]` of a file relative to `origin`, rounded to this precision; the weight is not multiplied in.
     fn from_file(point: [f64; 4], origin: [Self::Scalar; 3]) -> Self;
-}
-
-/// A position of a file relative to an origin.
-fn relative<S: Scalar>(position: [f64; 3], origin: [S; 3]) -> [S; 3] {
-    std::array::from_fn(|k| S::from_f64(position[k]) - origin[k])
 }
 
 impl<S: Scalar> FromFile for Plain<S> {
@@ -148,13 +144,6 @@ pub struct Lowered<P: Point> {
     grid_references: Vec<u32>,
     /// Of a view of these; empty until one is taken.
     view: view::ViewSlots<P>,
-}
-
-/// The origin to which the model's points lose nothing in this precision.
-fn origin_of<S: Scalar>(model: &Model) -> [S; 3] {
-    let positions = model.surfaces.iter().flat_map(|surface| &surface.points);
-    let bounds = positions.fold(Aabb::EMPTY, |bounds, &[x, y, z, _]| bounds.with([x, y, z].map(S::from_f64)));
-    exact_origin(&bounds)
 }
 
 /// The control points of a surface in the kernel's type, relative to `origin`, checked.
@@ -371,7 +360,7 @@ impl<P: Point> Lowered<P> {
 
     /// The scene.
     pub fn scene(&self) -> Scene<'_, P> {
-        Scene::new(self.header, &self.points, &self.surfaces, &self.offsets, &self.references)
+        self.scene_at(Place::File)
     }
 
     /// The patches; of no surface if they were not built.

@@ -17,7 +17,7 @@ use patchray::scalar::Scalar;
 use patchray::scene::Scene;
 use patchray::tree::Tree;
 
-use crate::lower::{Lowered, NET, ORDER};
+use crate::lower::{Lowered, NET, ORDER, Place};
 
 pub mod in_view;
 
@@ -33,6 +33,8 @@ pub const HITS: usize = 256;
 pub struct Views<'m, P: Point> {
     /// The scene.
     pub scene: Scene<'m, P>,
+    /// The same for rays in its nets' coordinates: see [`Place`].
+    pub nets: Scene<'m, P>,
     /// The patches.
     pub patches: Patches<'m, P::Scalar>,
     /// The binary trees.
@@ -44,8 +46,16 @@ pub struct Views<'m, P: Point> {
 impl<'m, P: Point> Views<'m, P> {
     /// The views of what was built.
     pub fn of(lowered: &'m Lowered<P>) -> Self {
-        let (scene, patches) = (lowered.scene(), lowered.patches());
-        Views { scene, patches, tree: lowered.tree(), grids: lowered.grids() }
+        let [scene, nets] = [Place::File, Place::Nets].map(|place| lowered.scene_at(place));
+        Views { scene, nets, patches: lowered.patches(), tree: lowered.tree(), grids: lowered.grids() }
+    }
+
+    /// The views for rays from there.
+    pub fn at(self, place: Place) -> Self {
+        match place {
+            Place::File => self,
+            Place::Nets => Views { scene: self.nets, ..self },
+        }
     }
 }
 

@@ -16,7 +16,7 @@ use patchray::ray::{Hit, Incidence, Interval, RayError};
 use patchray::scalar::Scalar;
 use patchray::scene::Scene;
 
-use crate::lower::ORDER;
+use crate::lower::{ORDER, Place};
 use crate::method::{Answer, Coherence, Hits, Method, Stopped, Task, Views};
 use crate::scene::camera::View;
 use crate::scene::rays::RayLine;
@@ -260,13 +260,13 @@ impl<M: Method<P>, P: Point> Tracer<Told<M, P>> for MethodTracer<'_, M, P> {
     }
 
     fn refusal(&self, ray: &RayLine) -> Option<RayError> {
-        let [origin, direction] = [ray.origin, ray.direction].map(|vector| vector.map(P::Scalar::from_f64));
-        self.views.scene.ray(origin, direction).err()
+        let (place, origin) = Place::of(ray.origin, self.views.scene.frame().origin());
+        self.views.at(place).scene.ray(origin, ray.direction.map(P::Scalar::from_f64)).err()
     }
 }
 
 /// A ray in the method's precision; `None` where it is not to be traced.
-type Ready<S> = Option<([S; 3], [S; 3], Interval<S>)>;
+type Ready<S> = Option<(Place, [S; 3], [S; 3], Interval<S>)>;
 
 /// A ray's answer, or why the kernel refused it; `None` where it was not traced.
 type Traced<H> = Option<Result<Answer<H>, RayError>>;
@@ -338,7 +338,8 @@ impl<M: Method<P>, P: Point> Lane<Told<M, P>> for MethodLane<'_, M, P> {
         tally.rays += rays.len() as u64;
         for block in rays.chunks(BLOCK) {
             self.ready.clear();
-            self.ready.extend(block.iter().map(ready));
+            let origin = self.tracer.views.scene.frame().origin();
+            self.ready.extend(block.iter().map(|ray| ready(ray, origin)));
             self.trace_ready(tally);
             for traced in self.found.drain(..) {
                 let outcome = outcome(&self.tracer.views.scene, &mut self.basis, traced);
@@ -354,11 +355,13 @@ impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
     fn trace_ready(&mut self, tally: &mut Tally) {
         self.found.clear();
         let MethodTracer { views, limits, .. } = self.tracer;
+        let of_nets = &views.at(Place::Nets);
         let begin = Instant::now();
         let mut counting = Counting::new(tally);
         self.found.extend(self.ready.iter().map(|ready| {
             let work = counting.next();
-            ready.as_ref().map(|(origin, direction, interval)| {
+            ready.as_ref().map(|(place, origin, direction, interval)| {
+                let views = if *place == Place::File { views } else { of_nets };
                 let ray = &views.scene.ray(*origin, *direction)?;
                 let coherence = Coherence { memory: &mut self.memory, line: self.line };
                 Ok(M::answer(views, coherence, &Task { ray, interval, limits }, &mut self.scratch, work))
@@ -418,11 +421,11 @@ pub fn found<P: Point>(scene: &Scene<'_, P>, basis: &mut Basis<P::Scalar, ORDER>
     }
 }
 
-/// The ray in the method's precision. Rounding keeps the order of `t_min` and `t_max`.
-fn ready<S: Scalar>(ray: &RayLine) -> Ready<S> {
-    let [origin, direction] = [ray.origin, ray.direction].map(|vector| vector.map(S::from_f64));
+/// The ray in the method's precision, of a scene with this origin. Rounding keeps the order of `t_min` and `t_max`.
+fn ready<S: Scalar>(ray: &RayLine, origin: [S; 3]) -> Ready<S> {
+    let (place, origin) = Place::of(ray.origin, origin);
     let interval = Interval::new(S::from_f64(ray.t_min), S::from_f64(ray.t_max));
-    interval.filter(|_| ray.valid).map(|interval| (origin, direction, interval))
+    interval.filter(|_| ray.valid).map(|interval| (place, origin, ray.direction.map(S::from_f64), interval))
 }
 
 #[cfg(test)]

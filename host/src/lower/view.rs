@@ -6,7 +6,7 @@ use patchray::ray::{Interval, RayError};
 use patchray::scalar::Scalar;
 use patchray::view::{Camera, Sight, View, ViewError, ViewMemory, ViewNeeds};
 
-use super::{LowerError, Lowered, Stages};
+use super::{LowerError, Lowered, Place, Stages};
 use crate::memory::{Bytes, Kind, Slots};
 use crate::method::Views;
 use crate::scene::camera;
@@ -66,11 +66,12 @@ impl<P: Point> ViewSlots<P> {
     }
 }
 
-/// The kernel's camera of a view, its numbers rounded to this precision.
-fn camera_of<S: Scalar>(view: &camera::View) -> Camera<S> {
-    let camera::View { eye, forward, right, up, .. } = *view;
-    let [eye, forward, right, up] = [eye, forward, right, up].map(|vector| vector.map(S::from_f64));
-    Camera { eye, forward, right, up }
+/// The kernel's camera of a view, its numbers rounded to this precision, for a scene with this origin; and the place that its
+/// eye is in.
+fn camera_of<S: Scalar>(view: &camera::View, origin: [S; 3]) -> (Place, Camera<S>) {
+    let (place, eye) = Place::of(view.eye, origin);
+    let [forward, right, up] = [view.forward, view.right, view.up].map(|vector| vector.map(S::from_f64));
+    (place, Camera { eye, forward, right, up })
 }
 
 /// The corners of the part of the image in which samples lie.
@@ -96,7 +97,8 @@ impl<P: Point> Lowered<P> {
     /// Why the kernel cannot trace all of the picture's rays as those of one view, if it cannot. Needs no patches.
     pub fn no_view(&self, view: &camera::View) -> Option<String> {
         let mut slots = ViewSlots::<P>::none();
-        let (scene, camera) = (self.scene(), camera_of(view));
+        let (place, camera) = camera_of(view, self.header.frame().origin());
+        let scene = self.scene_at(place);
         let needs = match View::build(&scene, None, &camera, slots.lend()) {
             Err(ViewError::Memory(needs)) => needs,
             Err(error) => return Some(reason(error)),
@@ -123,7 +125,8 @@ impl<P: Point> Lowered<P> {
         let mut nothing = ViewSlots::none();
         let patches = self.patches();
         let patches = self.stages.has_patches().then_some(&patches);
-        let needs = match View::build(&self.scene(), patches, &camera_of(view), nothing.lend()) {
+        let (place, camera) = camera_of(view, self.header.frame().origin());
+        let needs = match View::build(&self.scene_at(place), patches, &camera, nothing.lend()) {
             Err(ViewError::Memory(needs)) => needs,
             Ok(_) => ViewNeeds::default(),
             Err(ViewError::TooLarge) => return Err(LowerError::TooLarge(ViewError::TooLarge.to_string())),
@@ -139,15 +142,18 @@ impl<P: Point> Lowered<P> {
     /// # Errors
     /// The memory is of another view.
     pub fn seen(&mut self, view: &camera::View) -> Result<(Views<'_, P>, View<'_, P>), LowerError> {
-        let Lowered { stages, header, points, surfaces, offsets, references, patches, first, .. } = self;
-        let scene = super::Scene::new(*header, points, surfaces, offsets, references);
+        let (place, camera) = camera_of(view, self.header.frame().origin());
+        let headers = [Place::File, Place::Nets].map(|place| self.header_at(place));
+        let Lowered { stages, points, surfaces, offsets, references, patches, first, .. } = self;
+        let [scene, nets] = headers.map(|header| super::Scene::new(header, points, surfaces, offsets, references));
         let patches = super::Patches::new(patches, first);
         let with = stages.has_patches().then_some(&patches);
-        let seen = View::build(&scene, with, &camera_of(view), self.view.lend());
+        let of = if place == Place::File { &scene } else { &nets };
+        let seen = View::build(of, with, &camera, self.view.lend());
         let seen = seen.map_err(|error| LowerError::Internal(error.to_string()))?;
         let tree = super::Tree::new(&self.nodes, &self.links);
         let grids = super::Grids::new(&self.grids, &self.grid_offsets, &self.grid_references);
-        Ok((Views { scene, patches, tree, grids }, seen))
+        Ok((Views { scene, nets, patches, tree, grids }, seen))
     }
 
     /// The slots of the view that its part in `stages` takes, by kind; none if none was taken.
