@@ -1,13 +1,14 @@
 //! What every call has to keep, whatever it was given.
 
-use crate::common::allowances::RESIDUAL;
 use crate::input::Case;
 use patchray::limits::{Extent, Limits, Work};
 use patchray::ray::Hit;
 use patchray::scalar::Scalar;
+use patchray_host::oracle::is_farther;
 use patchray_host::scanline::{Found, Normal};
 use patchray_host::scene::model::ModelSurface;
 use patchray_host::scene::rays::RayLine;
+use patchray_host::scene::trace::Precision;
 use patchray_host::stress::truth::residual;
 use std::fmt::Debug;
 
@@ -45,23 +46,59 @@ pub(crate) fn in_range<S: Scalar>(hit: &Hit<S>, [t_min, t_max]: [S; 2], surfaces
     assert!((surface as usize) < surfaces, "{what:?}: {surface} of {surfaces} surfaces");
 }
 
-/// By how much more than rounding may account for in one evaluation a root may lie off its ray: the clipping methods work on
-/// projected nets, whose error is that of all control points.
-const OF_NETS: f64 = 8.0;
-
-/// By how much, as a length, a root of a surface may lie off its ray: by the tolerance, and by what rounding leaves, of (u, v) not
-/// least, across whose last digit a rational surface moves by as much more as its weights are apart.
-pub(crate) fn blur(surface: &ModelSurface, largest: f64, unit: f64, tolerance: f64) -> f64 {
-    let degrees = (surface.degree_u + surface.degree_v) as f64;
-    let rounding = unit * f64::from(RESIDUAL) * degrees * weight_ratio(surface);
-    // Coordinates are scaled to below 1, and to a half at least.
-    OF_NETS * 2.0 * largest * (tolerance.max(0.0) + rounding)
+/// The largest distance between a hit and its surface, and what it is made of: a share of the surface's size, some roundings of
+/// the largest coordinate at hand, and the rounding of t.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exactness {
+    /// A share of the surface's size.
+    share: f64,
+    /// The precision's unit of rounding.
+    pub(crate) unit: f64,
 }
 
-/// The largest coordinate of a case's control points.
-pub(crate) fn largest_coordinate(case: &Case) -> f64 {
-    let points = case.model.surfaces.iter().flat_map(|surface| &surface.points);
-    points.flat_map(|[x, y, z, _]| [x, y, z]).fold(0.0, |most, c| most.max(c.abs()))
+/// Roundings of the largest coordinate; and more of them for each degree of u and of v, since evaluation is a sum over rows of sums
+/// over columns.
+const ROUNDINGS: [f64; 2] = [16.0, 8.0];
+
+/// By how much more any hit may be off, however hard its surface: the clipping methods work on projected nets, whose error is that of
+/// all control points. (Of rays that are clear, [`crate::truth`] asks more.)
+const OF_NETS: f64 = 8.0;
+
+impl Exactness {
+    pub(crate) fn of(precision: Precision) -> Self {
+        match precision {
+            Precision::F64 => Exactness { share: 1e-14, unit: f64::EPSILON },
+            Precision::F32 => Exactness { share: 2e-6, unit: f64::from(f32::EPSILON) },
+        }
+    }
+
+    /// As a length, of a surface, where coordinates of other things as large as `at_hand` take part. Nothing that stands elsewhere
+    /// in the scene does.
+    pub(crate) fn length(self, surface: &ModelSurface, at_hand: f64) -> f64 {
+        let [least, per_degree] = ROUNDINGS;
+        let roundings = least + per_degree * (surface.degree_u + surface.degree_v) as f64;
+        self.share * size(surface) + roundings * self.unit * largest_coordinate(surface).max(at_hand)
+    }
+
+    /// What rounding t moves the ray's point by, along the ray.
+    pub(crate) fn of_t(self, t: f64, ray: &RayLine) -> f64 {
+        let [x, y, z] = ray.direction;
+        2.0 * self.unit * t.abs() * x.hypot(y).hypot(z)
+    }
+}
+
+/// A surface's size: the diagonal of the box of its control points.
+pub(crate) fn size(surface: &ModelSurface) -> f64 {
+    let extent = |k: usize| {
+        let all = surface.points.iter().map(move |point| point[k]);
+        all.clone().fold(f64::NEG_INFINITY, f64::max) - all.fold(f64::INFINITY, f64::min)
+    };
+    extent(0).hypot(extent(1)).hypot(extent(2))
+}
+
+fn largest_coordinate(surface: &ModelSurface) -> f64 {
+    let coordinates = surface.points.iter().flat_map(|[x, y, z, _]| [x, y, z]);
+    coordinates.fold(0.0, |most, c| most.max(c.abs()))
 }
 
 /// How far a surface's weights are apart.
@@ -70,21 +107,32 @@ fn weight_ratio(surface: &ModelSurface) -> f64 {
     weights.clone().fold(0.0, f64::max) / weights.fold(f64::INFINITY, f64::min)
 }
 
-/// The point of the surface at a hit's (u, v) is the ray's point at its t, to the tolerance and what rounding leaves.
+/// The ray's point at a hit's t is a point of the surface, to what rounding of the surface's own coordinates leaves, and to the
+/// tolerance where a larger one than the default is asked for. `at_hand` is how large other coordinates are that take part.
+///
+/// (u, v) may be too coarse to name that point, where weights are far apart: it may be any of the surface's.
 ///
 /// Cases whose numbers leave no such claim are passed over: a tolerance that is no small number, coordinates whose products
 /// leave `f64`, weights so far apart that quotients lose their digits, or so small that coordinates times weights, which is
 /// what the kernel is given, lose theirs.
-pub(crate) fn on_the_ray<S: Scalar>(hit: &Hit<S>, case: &Case, ray: &RayLine, limits: &Limits<S>, what: impl Debug) {
+pub(crate) fn on_the_ray<S: Scalar>(
+    hit: &Hit<S>,
+    case: &Case,
+    ray: &RayLine,
+    limits: &Limits<S>,
+    at_hand: f64,
+    what: impl Debug,
+) {
     let surface = &case.model.surfaces[hit.surface as usize];
-    let largest = largest_coordinate(case);
+    let largest = largest_coordinate(surface);
     let ratio = weight_ratio(surface);
-    let tolerance = limits.tolerance.to_f64();
+    let tolerance = if limits.tolerance > S::TOLERANCE { limits.tolerance.to_f64() } else { 0.0 };
     let fits = |c: f64| c == 0.0 || (1e-30..1e30).contains(&c.abs());
     let all_fit = [largest].iter().chain(&ray.origin).chain(&ray.direction).all(|&c| fits(c));
     let least = S::MIN_POSITIVE.to_f64() / S::EPSILON.to_f64();
     let given = |&[x, y, z, w]: &[f64; 4]| [x, y, z].iter().all(|&c| c == 0.0 || (c * w).abs() >= least);
-    if !(all_fit && largest > 0.0 && tolerance < 0.01 && ratio < 1e3 && surface.points.iter().all(given)) {
+    let small = limits.tolerance.is_finite() && tolerance < 0.01;
+    if !(all_fit && largest > 0.0 && small && ratio < 1e10 && surface.points.iter().all(given)) {
         return;
     }
     let found = Found {
@@ -95,17 +143,20 @@ pub(crate) fn on_the_ray<S: Scalar>(hit: &Hit<S>, case: &Case, ray: &RayLine, li
         normal: Normal::Nowhere,
         incidence: hit.incidence,
     };
-    let reach = ray.origin.iter().fold(largest, |most, c| most.max(c.abs()));
-    let [x, y, z] = ray.direction;
-    let unit = S::EPSILON.to_f64();
-    // What rounding t can move a point by; and what rounding the origin's way to the scene can.
-    let slack = 4.0 * unit * (found.t.abs() * x.hypot(y).hypot(z) + reach);
-    let allowed = blur(surface, largest, unit, tolerance) + slack;
-    let off = residual(surface, ray, &found);
+    let exactness = Exactness::of(case.precision);
+    let rounding = OF_NETS * exactness.length(surface, at_hand) + exactness.of_t(found.t, ray);
+    let allowed = rounding + 2.0 * tolerance * size(surface);
+    if residual(surface, ray, &found) <= allowed {
+        return;
+    }
+    // By how many times, as a power of two.
+    let farther = |times: f64| is_farther(surface, ray.origin, ray.direction, found.t, times * allowed);
+    let times = (0..100).map(|k| f64::from(k).exp2()).take_while(|&times| farther(times)).last();
     assert!(
-        off <= allowed,
-        "{what:?}: {hit:?} is {off:e} off its ray, {allowed:e} are allowed; {:?} {:?} {ray:?} {limits:?} {surface:?}",
+        times.is_none(),
+        "{what:?}: {hit:?} is off its surface by {times:?} times the {allowed:e} allowed; {:?} {:?} {ray:?} {limits:?} {:?}",
         case.precision,
-        case.numbers
+        case.numbers,
+        case.model.surfaces
     );
 }

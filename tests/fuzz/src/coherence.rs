@@ -1,4 +1,5 @@
-//! Coherence memory of any bits: coherent and original methods agree where all that is answered is proved.
+//! Coherence memory of any bits: where all that is answered is proved, coherent and original methods answer as the oracle does, and
+//! the coherent ones answer whatever their originals do.
 
 use crate::bytes::Bytes;
 use crate::claims::{in_range, on_the_ray, within_limits, within_worst_case};
@@ -7,7 +8,7 @@ use crate::input::{Case, OfKind, interval, limits, subdivision, with_kind};
 use crate::lane::{Lane, Way};
 use crate::ready::prepare;
 use crate::scribble::scribble;
-use crate::truth::{alike, none_lost, outcome};
+use crate::truth::Truth;
 use patchray::limits::{Acceptance, Limits};
 use patchray::scalar::Scalar;
 
@@ -18,7 +19,7 @@ pub(crate) fn check(bytes: &[u8]) {
     with_kind(&case, bytes, Coherence(way));
 }
 
-/// By clipping, and by this.
+/// By this, and by the method that it is the coherent form of.
 struct Coherence(Way);
 
 impl OfKind for Coherence {
@@ -52,19 +53,25 @@ impl OfKind for Coherence {
                 continue;
             };
             let range = [interval.min(), interval.max()];
-            let mut answers = Vec::new();
-            for way in [Way::Clipping, way] {
-                let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, &limits);
-                within_limits(&lane.work, &limits, way);
-                within_worst_case(&lane.work, &limits, &way.extent(&prepared, limits.acceptance), way);
+            let truth = Truth::new(case, &line, 0.0);
+            let mut answered = false;
+            for way in [way.original().unwrap_or(Way::Clipping), way] {
+                let kept = lane.remembered.clone();
+                let extent = way.extent(&prepared, limits.acceptance);
+                let bound = answered && way.original().is_some();
+                let answer = truth.judged(&format!("{way:?}"), &limits, bound, |limits| {
+                    // Memory as it was: what a search leaves there would help the next.
+                    lane.remembered.clone_from(&kept);
+                    let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, limits);
+                    within_limits(&lane.work, limits, way);
+                    within_worst_case(&lane.work, limits, &extent, way);
+                    answer
+                });
+                answered = answer.is_ok();
                 for hit in answer.into_iter().flatten() {
                     in_range(&hit, range, surfaces, way);
-                    on_the_ray(&hit, case, &line, &limits, way);
+                    on_the_ray(&hit, case, &line, &limits, 0.0, way);
                 }
-                answers.push((format!("{way:?}"), outcome(&prepared, &answer)));
-            }
-            if answers.iter().any(|(_, answer)| !alike(case, answer, &answers[0].1)) {
-                none_lost(case, &line, &answers);
             }
         }
     }

@@ -1,11 +1,13 @@
-//! One surface of low degree and one ray, by one of the methods that prove what they answer, against the oracle.
+//! One surface of low degree, or one with a mate, and one ray, by one of the methods that prove what they answer. The oracle is asked
+//! of every ray, whatever the answer.
 
 use crate::bytes::Bytes;
+use crate::claims::on_the_ray;
 use crate::common::Kind;
 use crate::input::{Case, OfKind, interval, limits, subdivision, with_kind};
 use crate::lane::{Lane, Way};
 use crate::ready::prepare;
-use crate::truth::{alike, none_lost, outcome};
+use crate::truth::Truth;
 use patchray::scalar::Scalar;
 
 pub(crate) fn check(bytes: &[u8]) {
@@ -15,11 +17,11 @@ pub(crate) fn check(bytes: &[u8]) {
     with_kind(&case, bytes, Honest(choice));
 }
 
-/// By which method, and whether the oracle is asked in any case.
+/// By which method.
 struct Honest(u8);
 
-/// One input in so many asks the oracle, whatever the answers.
-const ORACLE: usize = 8;
+/// So many choices in turn are the same method.
+const ALIKE: usize = 8;
 
 impl OfKind for Honest {
     fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
@@ -28,7 +30,7 @@ impl OfKind for Honest {
         let limits = limits::<P::Scalar>(&mut bytes);
         let proving: Vec<_> = Way::ALL.into_iter().filter(|way| way.proves(limits.acceptance)).collect();
         let Honest(choice) = self;
-        let way = proving[usize::from(choice) / ORACLE % proving.len()];
+        let way = proving[usize::from(choice) / ALIKE % proving.len()];
         let Some(prepared) = prepare::<P>(&case.model, &options, way.takes()) else {
             return;
         };
@@ -36,19 +38,12 @@ impl OfKind for Honest {
         let (Ok(ray), Some(interval)) = (prepared.scene().ray(origin, direction), interval(&line)) else {
             return;
         };
-        let mut lane = Lane::<P>::new(1);
-        let mut answer = |way| {
-            let answer = lane.closest(way, &prepared, 0, &ray, &interval, &limits);
-            (format!("{way:?} {:?}", limits.acceptance), outcome(&prepared, &answer))
-        };
-        let mut answers = vec![answer(way)];
-        // The oracle takes longer than many methods: most answers are held against clipping's first.
-        if usize::from(choice) % ORACLE != 0 && way != Way::Clipping {
-            answers.push(answer(Way::Clipping));
-            if alike(case, &answers[0].1, &answers[1].1) {
-                return;
-            }
+        let mut lane = Lane::<P>::new(case.model.surfaces.len());
+        let name = format!("{way:?} {:?}", limits.acceptance);
+        let answer = Truth::new(case, &line, 0.0)
+            .judged(&name, &limits, false, |limits| lane.closest(way, &prepared, 0, &ray, &interval, limits));
+        for hit in answer.into_iter().flatten() {
+            on_the_ray(&hit, case, &line, &limits, 0.0, &name);
         }
-        none_lost(case, &line, &answers);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::bytes::Bytes;
 use crate::common::Kind;
+use crate::shapes;
 use patchray::frame::PADDING;
 use patchray::limits::{Acceptance, Limits};
 use patchray::point::{Plain, Weighted};
@@ -62,7 +63,7 @@ impl Numbers {
     }
 
     /// How large most are.
-    fn size(self) -> f64 {
+    pub(crate) fn size(self) -> f64 {
         match self {
             Numbers::Scaled(exponent) => f64::from(exponent).exp2(),
             _ => 1.0,
@@ -85,7 +86,12 @@ pub(crate) struct Case {
     pub(crate) precision: Precision,
     pub(crate) weighted: bool,
     pub(crate) numbers: Numbers,
+    /// Whether its surfaces are those of [`crate::shapes`].
+    pub(crate) shaped: bool,
 }
+
+/// The bits of a case's first byte that are all set if its surfaces are those of [`crate::shapes`].
+const SHAPED: u8 = 0xa0;
 
 impl Case {
     /// Up to so many surfaces, in any numbers.
@@ -102,10 +108,13 @@ impl Case {
         let kind = bytes.byte();
         let precision = if kind & 1 == 0 { Precision::F64 } else { Precision::F32 };
         let weighted = kind & 2 != 0;
+        if kind & SHAPED == SHAPED {
+            return shapes::case(bytes, precision, weighted, degree);
+        }
         let numbers = numbers(bytes);
         let count = 1 + bytes.below(surfaces);
         let surfaces = (0..count).map(|_| surface(bytes, numbers, precision, weighted, degree)).collect();
-        Case { model: Model::numbered(surfaces), precision, weighted, numbers }
+        Case { model: Model::numbered(surfaces), precision, weighted, numbers, shaped: false }
     }
 
     /// Whether its numbers are such as any scene may have.
@@ -124,6 +133,9 @@ impl Case {
 
     /// A point of a surface, or of its net, or any other.
     fn target(&self, bytes: &mut Bytes<'_>) -> [f64; 3] {
+        if self.shaped {
+            return shapes::target(self, bytes);
+        }
         let surfaces = &self.model.surfaces;
         let surface = &surfaces[bytes.below(8) % surfaces.len()];
         let point = match bytes.below(8) {
@@ -139,6 +151,9 @@ impl Case {
 
     /// A ray, mostly at a surface.
     pub(crate) fn ray(&self, bytes: &mut Bytes<'_>) -> RayLine {
+        if self.shaped {
+            return shapes::ray(self, bytes);
+        }
         let kind = bytes.byte();
         let origin = self.point(bytes);
         let direction = if kind & 3 == 3 {
@@ -248,6 +263,16 @@ fn usual<S: Scalar>() -> Limits<S> {
         bisections: 100,
         ..Limits::default()
     }
+}
+
+/// The same limits, with the budgets that a person gets who asks for none.
+pub(crate) fn with_default_budgets<S: Scalar>(limits: &Limits<S>) -> Limits<S> {
+    let mut limits = *limits;
+    let mut defaults = Limits::<S>::default();
+    for (budget, default) in budgets_of(&mut limits).into_iter().zip(budgets_of(&mut defaults)) {
+        *budget = *default;
+    }
+    limits
 }
 
 /// Limits with the usual parameters, by the one rule of acceptance or the other, and budgets that honest rays do not meet.

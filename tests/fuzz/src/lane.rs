@@ -41,6 +41,16 @@ impl Way {
         }
     }
 
+    /// The method without memory that a coherent one is made of.
+    pub(crate) fn original(self) -> Option<Way> {
+        match self {
+            Way::NewtonCoherent => Some(Way::Newton),
+            Way::NewtonCoherentProving => Some(Way::NewtonProving),
+            Way::ClippingCoherent => Some(Way::Clipping),
+            _ => None,
+        }
+    }
+
     /// Whether it answers rightly whatever the ray meets, as far as numbers can tell, under this rule.
     pub(crate) fn proves(self, acceptance: Acceptance) -> bool {
         match self {

@@ -29,6 +29,7 @@ mod input;
 mod lane;
 mod ready;
 mod scribble;
+mod shapes;
 mod truth;
 
 mod budgets;

@@ -54,7 +54,7 @@ impl OfKind for Methods {
             }
             for hit in &hits {
                 in_range(hit, range, case.model.surfaces.len(), way);
-                on_the_ray(hit, case, &line, &limits, way);
+                on_the_ray(hit, case, &line, &limits, 0.0, way);
             }
         }
     }

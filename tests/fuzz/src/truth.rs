@@ -1,78 +1,172 @@
-//! Answers held against the oracle.
+//! Answers held against the oracle, which is asked of every ray: a method that proves its answers is no judge of another, since
+//! what both share may be what is wrong.
 //!
 //! An answer counts only where the oracle is sure of it by a margin: what a ray moved by a rounding would answer otherwise is no
-//! fault of the method. The quick oracle is asked first; it takes the one in double-double to convict.
+//! fault of the method. The quick oracle is asked first; it takes the one in double-double to convict. Margins and allowances are
+//! those of the surfaces concerned: what else stands in the scene excuses nothing.
 
-use crate::claims;
-use crate::common::{Kind, Prepared};
-use crate::input::Case;
+use crate::claims::{Exactness, size};
+use crate::input::{Case, with_default_budgets};
 use crate::lane::Answer;
-use patchray::bernstein::Basis;
+use patchray::limits::{Limit, Limits};
+use patchray::ray::{Hit, Incidence};
 use patchray::scalar::Scalar;
-use patchray_host::judge::Truth;
-use patchray_host::oracle::Oracle;
-use patchray_host::scanline::{Outcome, found};
-use patchray_host::scene::model::ModelSurface;
+use patchray_host::oracle::{DoubleDouble, OracleIn, Real, Verdict};
+use patchray_host::scene::model::{Model, ModelSurface};
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::trace::Precision;
-use patchray_host::stress::case::Case as StressCase;
-use patchray_host::stress::judge::Judge;
+use std::cell::OnceCell;
 
-/// An answer as the harness has it.
-pub(crate) fn outcome<P: Kind>(prepared: &Prepared<P>, answer: &Answer<P::Scalar>) -> Outcome {
-    match answer {
-        Ok(None) => Outcome::Miss,
-        Err(gave_up) => Outcome::GaveUp { limit: gave_up.limit.name(), best: None },
-        Ok(Some(hit)) => Outcome::Hit(found(&prepared.scene(), &mut Basis::new(), hit)),
+/// What is true of a ray, found out as far as it is asked for.
+pub(crate) struct Truth<'c> {
+    case: &'c Case,
+    ray: RayLine,
+    /// How large other coordinates are that take part.
+    at_hand: f64,
+    quick: Verdict,
+    sure: OnceCell<Verdict>,
+    clear: OnceCell<bool>,
+}
+
+/// Parts that the oracle looks at of a surface. A pole met head on takes up to 2,000; rays that take more lie along a surface, and
+/// nothing is known of them.
+const DOMAINS: usize = 2500;
+
+/// Parts of surfaces that the quick oracle leaves open, beyond which the other one is not asked, which would leave them open too.
+const MANY: usize = 100;
+
+/// Shares of a surface's size.
+struct Shares {
+    /// The margin from which on an answer is judged.
+    judged: f64,
+    /// That from which on there has to be one.
+    clear: f64,
+    /// How far a right answer may be off across the surface.
+    across: f64,
+    /// How far it may be off along the ray at most.
+    most: f64,
+}
+
+impl Shares {
+    const fn of(precision: Precision) -> Self {
+        match precision {
+            Precision::F64 => Shares { judged: 1e-12, clear: 1e-9, across: 1e-9, most: 1e-4 },
+            // Where three roots all but fall together, a third of the digits is all that rounding leaves.
+            Precision::F32 => Shares { judged: 2e-5, clear: 1e-4, across: 5e-6, most: 5e-3 },
+        }
     }
 }
 
-/// No answer is lost: where the oracle is sure of a ray, each is as it says, or was given up. `answers` are named.
-pub(crate) fn none_lost(case: &Case, ray: &RayLine, answers: &[(String, Outcome)]) {
-    let stress = StressCase::of_rays(case.model.clone(), vec![*ray]);
-    let verdict = Oracle::new(&case.model).trace(ray.origin, ray.direction, ray.t_min, ray.t_max);
-    let rays = [*ray];
-    let quick = Judge::by(&stress, &rays, vec![Truth::from(&verdict)], case.precision);
-    let blur = case.model.surfaces.iter().map(|surface| blur(surface, case)).fold(0.0, f64::max);
-    if !answers.iter().any(|(_, outcome)| quick.is_lost(0, outcome, blur)) {
-        return;
+impl<'c> Truth<'c> {
+    pub(crate) fn new(case: &'c Case, ray: &RayLine, at_hand: f64) -> Self {
+        let quick = verdict::<f64>(&case.model, ray, |surface| unit(surface, case.precision, at_hand));
+        Truth { case, ray: *ray, at_hand, quick, sure: OnceCell::new(), clear: OnceCell::new() }
     }
-    // Along a line that is all of a surface the oracle has roots each of which blurs into the next, and takes them for one, which
-    // may lie outside the interval.
-    if case.model.surfaces.iter().any(|surface| !has_area(surface)) {
-        return;
+
+    fn unit(&self, surface: &ModelSurface) -> f64 {
+        unit(surface, self.case.precision, self.at_hand)
     }
-    let sure = Judge::new(&stress, &rays, case.precision);
-    // What moving the ray by as much as roots may lie off it changes is no loss: in `f32`, of weights far apart, that is more than
-    // the judge's least margin.
-    let truth = sure.truth(0).copied().unwrap_or_default();
-    let margin = truth.margin * sure.diagonal();
-    if blur > margin {
-        return;
+
+    fn sure(&self) -> &Verdict {
+        self.sure.get_or_init(|| verdict::<DoubleDouble>(&self.case.model, &self.ray, |surface| self.unit(surface)))
     }
-    // At a shallow angle the same moves the root along the ray by more than the judge lets pass of any.
-    let most = sure.allowance(&truth, ray).most * sure.diagonal();
-    if verdict.roots.first().is_some_and(|root| blur > most * root.cosine) {
-        return;
+
+    /// What a call answers under these limits, or, where it may not give up, under default budgets; it is right, was given up, or
+    /// nothing is sure. `answered` is whether the call has to answer however hard the ray, since its original does.
+    pub(crate) fn judged<S: Scalar>(
+        &self,
+        name: &str,
+        limits: &Limits<S>,
+        answered: bool,
+        mut call: impl FnMut(&Limits<S>) -> Answer<S>,
+    ) -> Answer<S> {
+        let mut answer = call(limits);
+        if out_of_budget(&answer) && (answered || self.is_clear()) {
+            answer = call(&with_default_budgets(limits));
+            let why = if answered { "its original answers" } else { "is clear" };
+            assert!(!out_of_budget(&answer), "{name}: {answer:?} under default budgets of a ray that {why}; {self}");
+        }
+        if let Ok(answer) = answer {
+            let convicted = self.is_wrong(&answer, &self.quick)
+                && self.can_be_judged()
+                && self.sure().margin >= Shares::of(self.case.precision).judged
+                && self.is_wrong(&answer, self.sure());
+            assert!(!convicted, "{name} answers {answer:?}; {self}");
+        }
+        answer
     }
-    for (name, outcome) in answers {
-        assert!(
-            !sure.is_lost(0, outcome, blur),
-            "{name} answers {outcome:?}, the oracle {:?}; case {:?}, ray {ray:?}, surfaces {:?}",
-            truth,
-            (case.precision, case.numbers),
-            case.model.surfaces
-        );
+
+    /// Whether an answer is not what a verdict says, however sure.
+    fn is_wrong<S: Scalar>(&self, answer: &Option<Hit<S>>, verdict: &Verdict) -> bool {
+        let (Some(hit), Some(root)) = (answer, verdict.roots.first()) else {
+            return answer.is_some() || !verdict.roots.is_empty();
+        };
+        let Shares { clear, across, most, .. } = Shares::of(self.case.precision);
+        let is_clear = verdict.margin >= clear;
+        let exactness = Exactness::of(self.case.precision);
+        let concerned = [root.surface, hit.surface as usize].map(|k| &self.case.model.surfaces[k]);
+        let largest = |of: &dyn Fn(f64, f64) -> f64| {
+            let of = concerned.map(|surface| of(size(surface), exactness.length(surface, self.at_hand)));
+            of[0].max(of[1])
+        };
+        let grazing = largest(&|size, exact| 64.0 * (exact / size).sqrt());
+        if is_clear && hit.incidence != Incidence::Crossing && root.cosine > grazing {
+            return true;
+        }
+        // What is clear is as exact as rounding leaves it.
+        let across = largest(&|size, exact| (4.0 * exact).max(if is_clear { 0.0 } else { across * size }));
+        let most = largest(&|size, exact| (4.0 * exact).max(most * size));
+        let [x, y, z] = self.ray.direction;
+        let off = (hit.t.to_f64() - root.t).abs() * x.hypot(y).hypot(z);
+        let allowed = (across / root.cosine).min(most) + 2.0 * exactness.of_t(root.t, &self.ray);
+        off.is_nan() || off > allowed
+    }
+
+    /// Whether the ray is as clear of each surface, seen alone, as default budgets have to suffice for: all along its line, which is
+    /// searched whatever the interval.
+    fn is_clear(&self) -> bool {
+        let Shares { clear, .. } = Shares::of(self.case.precision);
+        let line = RayLine { t_min: f64::NEG_INFINITY, t_max: f64::INFINITY, ..self.ray };
+        let of = |surface: &ModelSurface| {
+            let model = Model::numbered(vec![surface.clone()]);
+            let verdict = verdict::<DoubleDouble>(&model, &line, |surface| self.unit(surface));
+            verdict.margin >= clear && verdict.unresolved == 0
+        };
+        *self.clear.get_or_init(|| self.can_be_judged() && self.case.model.surfaces.iter().all(of))
+    }
+
+    /// Whether the oracle in double-double can tell more than how long it takes.
+    fn can_be_judged(&self) -> bool {
+        // Along a line that is all of a surface the oracle has roots each of which blurs into the next, and takes them for one,
+        // which may lie outside the interval.
+        self.quick.unresolved <= MANY && self.case.model.surfaces.iter().all(has_area)
     }
 }
 
-/// See [`claims::blur`].
-fn blur(surface: &ModelSurface, case: &Case) -> f64 {
-    let (unit, tolerance) = match case.precision {
-        Precision::F64 => (f64::EPSILON, f64::TOLERANCE),
-        Precision::F32 => (f64::from(f32::EPSILON), f64::from(f32::TOLERANCE)),
-    };
-    claims::blur(surface, claims::largest_coordinate(case), unit, tolerance)
+impl std::fmt::Display for Truth<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Case { precision, numbers, model, .. } = self.case;
+        let Verdict { roots, margin, unresolved } = self.sure();
+        write!(f, "the oracle {:?} of {}, margin {margin:e}, {unresolved} unresolved; ", roots.first(), roots.len())?;
+        write!(f, "{precision:?} {numbers:?}, ray {:?}, surfaces {:?}", self.ray, model.surfaces)
+    }
+}
+
+fn verdict<R: Real>(model: &Model, ray: &RayLine, unit: impl Fn(&ModelSurface) -> f64) -> Verdict {
+    let oracle = OracleIn::<R>::measured_by(model, unit).within(DOMAINS);
+    oracle.trace(ray.origin, ray.direction, ray.t_min, ray.t_max)
+}
+
+/// What margins of a surface are shares of: its size, or as much more as the rounding of its coordinates takes.
+fn unit(surface: &ModelSurface, precision: Precision, at_hand: f64) -> f64 {
+    let exact = Exactness::of(precision).length(surface, at_hand);
+    size(surface).max(4.0 * exact / Shares::of(precision).judged).max(f64::MIN_POSITIVE)
+}
+
+/// Whether a ray was given up for a budget: not for what was lent to the call, which no budget makes good.
+fn out_of_budget<S>(answer: &Answer<S>) -> bool {
+    let lent = [Limit::Hits, Limit::Scratch, Limit::Line, Limit::Memory, Limit::Slot];
+    answer.as_ref().is_err_and(|gave_up| !lent.contains(&gave_up.limit))
 }
 
 /// Whether a surface's control points lie neither all in one point nor on one line.
@@ -84,20 +178,4 @@ fn has_area(surface: &ModelSurface) -> bool {
     let least = size([a, b, c]) * size([a, b, c]) * 1e-9;
     let across = |[x, y, z]: [f64; 3]| size([b * z - c * y, c * x - a * z, a * y - b * x]);
     surface.points.iter().map(from).any(|point| across(point) > least)
-}
-
-/// Whether two answers to a ray say the same, as far as it can be told without the oracle; one that was given up says nothing.
-pub(crate) fn alike(case: &Case, one: &Outcome, other: &Outcome) -> bool {
-    match (one, other) {
-        (Outcome::GaveUp { .. }, _) | (_, Outcome::GaveUp { .. }) => true,
-        (Outcome::Hit(one), Outcome::Hit(other)) => {
-            let near = match case.precision {
-                Precision::F64 => 1e-9,
-                Precision::F32 => 1e-5,
-            };
-            (one.t - other.t).abs() <= near * one.t.abs().max(other.t.abs())
-        }
-        (Outcome::Miss, Outcome::Miss) => true,
-        _ => false,
-    }
 }

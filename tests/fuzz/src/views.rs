@@ -1,5 +1,5 @@
 //! Views and their scan lines: any surfaces, cameras, windows and limits, and coherence memory of any bits, through the methods
-//! for the rays of a view, one at a time; one that proves what it answers beside clipping.
+//! for the rays of a view, one at a time; one that proves what it answers beside its original, both held against the oracle.
 
 use crate::bytes::Bytes;
 use crate::claims::{in_range, on_the_ray, within_limits, within_worst_case};
@@ -8,7 +8,7 @@ use crate::input::{Case, OfKind, any_limits, in_kernel, limits, number, subdivis
 use crate::ready::{Takes, prepare};
 use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
 use crate::scribble::scribble;
-use crate::truth::{alike, none_lost, outcome};
+use crate::truth::Truth;
 use patchray::limits::{Acceptance, Extent, Limits};
 use patchray::line::Window;
 use patchray::ray::Interval;
@@ -65,9 +65,14 @@ impl OfKind for Views {
         scribble(&mut bytes, &mut thread.remembered);
         scribble(&mut bytes, &mut thread.followed);
         thread.last = bytes.count();
-        let mut answers = vec![Vec::new(); places.len()];
-        let both = [InView::ClippingBare, method];
-        for &method in if compared && proves(method) { &both[..] } else { &both[1..] } {
+        let at_hand = camera.eye.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let lines: Vec<_> = places.iter().map(|&place| ray_line(&camera, place, &interval)).collect();
+        let proving = compared && proves(method);
+        let truths: Vec<_> = lines.iter().filter(|_| proving).map(|line| Truth::new(case, line, at_hand)).collect();
+        // Which of the rays the original answers, for the method that is made of it.
+        let mut answered = vec![false; places.len()];
+        let both = [original(method).unwrap_or(InView::ClippingBare), method];
+        for &method in if proving { &both[..] } else { &both[1..] } {
             let Ok(mut room) = ViewRoom::for_view(&prepared, method.has_patches(), &in_kernel) else {
                 return;
             };
@@ -85,36 +90,48 @@ impl OfKind for Views {
                 clipped: clips || method.falls_back() && limits.acceptance == Acceptance::Proved,
                 ..Extent::default()
             };
-            for (&place, answers) in places.iter().zip(&mut answers) {
+            for (k, (&place, ray_line)) in places.iter().zip(&lines).enumerate() {
                 let Ok(ray) = view.ray(place, &interval) else {
                     continue;
                 };
-                let answer = thread.trace(method, &view, &mut line, scan_line, &ray, &limits);
-                within_limits(&thread.work, &limits, method);
-                within_worst_case(&thread.work, &limits, &extent, method);
-                let line = ray_line(&camera, place, &interval);
+                let kept = (thread.remembered.clone(), thread.followed.clone(), thread.last);
+                let mut trace = |limits: &Limits<P::Scalar>| {
+                    // Memory as it was: what a search leaves there would help the next.
+                    thread.remembered.clone_from(&kept.0);
+                    thread.followed.clone_from(&kept.1);
+                    thread.last = kept.2;
+                    let answer = thread.trace(method, &view, &mut line, scan_line, &ray, limits);
+                    within_limits(&thread.work, limits, method);
+                    within_worst_case(&thread.work, limits, &extent, method);
+                    answer
+                };
+                let answer = match truths.get(k) {
+                    Some(truth) => {
+                        let bound = answered[k] && original(method).is_some();
+                        truth.judged(&format!("{method:?}"), &limits, bound, trace)
+                    }
+                    None => trace(&limits),
+                };
+                answered[k] = answer.is_ok();
                 if let Some(hit) = answer.unwrap_or_else(|gave_up| gave_up.best) {
                     let ahead = interval.min().greater(P::Scalar::ZERO);
                     in_range(&hit, [ahead, interval.max()], surfaces, method);
                     if case.is_tame() {
-                        on_the_ray(&hit, case, &line, &limits, method);
+                        on_the_ray(&hit, case, ray_line, &limits, at_hand, method);
                     }
                 }
-                if proves(method) {
-                    answers.push((format!("{method:?}"), line, outcome(&prepared, &answer)));
-                }
             }
         }
-        if !compared {
-            return;
-        }
-        for answers in answers {
-            let Some((_, line, first)) = answers.first() else { continue };
-            if answers.iter().any(|(.., answer)| !alike(case, answer, first)) {
-                let named: Vec<_> = answers.iter().map(|(name, _, answer)| (name.clone(), *answer)).collect();
-                none_lost(case, line, &named);
-            }
-        }
+    }
+}
+
+/// The method without memory that a coherent or predicted one is made of.
+fn original(method: InView) -> Option<InView> {
+    match method {
+        InView::NewtonCoherent | InView::NewtonPredicted => Some(InView::Newton),
+        InView::ClippingCoherent | InView::ClippingPredicted => Some(InView::Clipping),
+        InView::NewtonCoherentProving | InView::NewtonPredictedProving => Some(InView::NewtonProving),
+        _ => None,
     }
 }
 
