@@ -120,20 +120,27 @@ pub(crate) fn first_met<P: Point, const N: usize>(
             (least, best) = (Some(rank), Some(place));
         }
     }
+    let Some(place) = best else { return Ok(None) };
     let stretch = farthest - nearest;
-    let incidence = if stretch > exact.size * P::Scalar::from_f64(CONTACT) {
-        Incidence::Contact
+    let mut incidence = Incidence::Crossing;
+    if stretch > exact.size * P::Scalar::from_f64(CONTACT) {
+        incidence = Incidence::Contact;
     } else if stretch > exact.allowed() * P::Scalar::from_u32(BESIDE) {
-        // Roots may be apart that cannot be told apart.
-        Incidence::Grazing
-    } else {
-        Incidence::Crossing
-    };
-    Ok(best.map(|place| {
-        // What is held by no more than its net's error may as well be a ray that all but meets the surface.
-        let held = place.local.distance() > exact.allowed();
-        Met { place, incidence: if held { incidence.max(Incidence::Grazing) } else { incidence } }
-    }))
+        // Roots may be apart that cannot be told apart; or what is allowed across the ray, to both sides of one root, is so much along
+        // it.
+        let [depth_u, depth_v] =
+            planes.depth_derivatives(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
+        let [by_u, by_v] = place.local.inverse_bounds(allowed + allowed);
+        let explained = depth_u.abs() * by_u + depth_v.abs() * by_v;
+        if place.local.may_be_singular(exact.reach) || !(stretch <= explained) {
+            incidence = Incidence::Grazing;
+        }
+    }
+    // What is held by no more than its net's error may as well be a ray that all but meets the surface.
+    if place.local.distance() > exact.allowed() {
+        incidence = incidence.max(Incidence::Grazing);
+    }
+    Ok(Some(Met { place, incidence }))
 }
 
 /// A ray is in contact with a surface along a stretch longer than this share of the surface's size. Where it is shorter, it is

@@ -233,9 +233,13 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
     ) -> bool {
         let ([fu, gu], [fv, gv]) = (self.du, self.dv);
         let lengths = fu.abs() + gu.abs() + (fv.abs() + gv.abs());
-        let rounding = S::EPSILON * S::from_u32(32) * exact.reach;
+        let mut rounding = S::EPSILON * S::from_u32(32) * exact.reach * lengths;
+        // Derivatives over a weight may be as much larger, and so may what they are off by.
+        if F::RATIONAL {
+            rounding += S::EPSILON * S::from_u32(16) * self.size;
+        }
         // The weight may fall along the step, by which distances grow.
-        self.distance() * rounding * lengths <= exact.allowed() * self.determinant.abs() * self.lightest::<F>(step)
+        self.distance() * rounding <= exact.allowed() * self.determinant.abs() * self.lightest::<F>(step)
     }
 
     /// How fast the root moves, in u and in v, if the ray's slopes change as fast as each of these: f and g at a fixed place on
