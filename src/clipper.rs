@@ -286,14 +286,21 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                 Clip::Settled => Step::Settled,
             };
             if let (Step::Settled, true) = (&step, settled) {
-                step = match nearest(surface, planes, whole, part, exact, basis)? {
+                let held = part.error * P::Scalar::from_u32(HELD);
+                step = match nearest(surface, planes, whole, &part.region, exact, held, basis)? {
                     Some(met) => Step::Done(Some(met)),
                     None if all_pass(surface, whole, part, exact, basis)? => Step::Done(None),
                     // Between lines that are near parallel both clips may settle too soon.
                     None => {
                         let longer = part.longer();
-                        let halves = part.region.halves(longer).or_else(|| part.region.halves(longer.other()));
-                        halves.map_or(Step::Done(None), Step::Bisect)
+                        match part.region.halves(longer).or_else(|| part.region.halves(longer.other())) {
+                            Some(halves) => Step::Bisect(halves),
+                            // No number parts what is left, and nothing proves that the ray passes it: so it is told as a graze.
+                            None => {
+                                let all = P::Scalar::INFINITY;
+                                Step::Done(nearest(surface, planes, whole, &part.region, exact, all, basis)?)
+                            }
+                        }
                     }
                 };
             }
@@ -387,7 +394,7 @@ const HELD: u32 = 1;
 
 /// Of a region whose points all pass the ray within the tolerance or the error of their net, the one that the ray meets
 /// first, in its interval if one is; from its corners, the middles of its sides and its middle, each brought nearer by Newton's
-/// method. `None` if the ray passes all of them by, as it may at a phantom hit.
+/// method. `None` if the ray passes all of them by, by more than what is allowed and `held`, as it may at a phantom hit.
 ///
 /// Such a region is small but where the ray lies in the surface.
 #[cold]
@@ -396,17 +403,17 @@ fn nearest<P: Point>(
     surface: &Surface<'_, P>,
     planes: &Planes<P::Scalar>,
     whole: &[P::Flat],
-    part: &Part<'_, P::Flat>,
+    region: &Region<P::Parameter>,
     exact: &Exactness<P::Scalar>,
+    held: P::Scalar,
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Option<Met<P::Parameter>>, Limit> {
-    let ([[u0, u1], [v0, v1]], [u, v]) = (part.region.sides, part.region.middle());
-    let mut from = |at| polished(surface, whole, &part.region, at, exact, &mut *basis);
+    let ([[u0, u1], [v0, v1]], [u, v]) = (region.sides, region.middle());
+    let mut from = |at| polished(surface, whole, region, at, exact, &mut *basis);
     let corners = [from([u0, v0])?, from([u0, v1])?, from([u1, v0])?, from([u1, v1])?];
     let [a, b, c, d] = corners;
     let places = [from([u, v])?, a, b, c, d, from([u0, v])?, from([u1, v])?, from([u, v0])?, from([u, v1])?];
-    let error = part.error * P::Scalar::from_u32(HELD);
-    first_met(surface, planes, places, exact, error, basis)
+    first_met(surface, planes, places, exact, held, basis)
 }
 
 /// Whether the ray is proved to pass all of a region by more than rounding: it passes a corner by more than the others lie from

@@ -47,6 +47,28 @@ fn all<P: Point>(
     Ok((roots, work))
 }
 
+/// What no number parts and nothing proves to be passed is not dropped.
+#[test]
+fn what_is_left_where_halving_ends_is_a_graze() {
+    let frame = Frame::new(Aabb { low: [-0.5; 3], high: [0.5; 3] });
+    let ray = frame.ray([0.0, 0.0, -2.0], [0.0, 0.0, 1.0]).unwrap();
+    let (planes, _) = frame.enter(&ray, &Interval::ahead()).unwrap();
+    // It passes the middle by 2^-20.
+    let points = graph([2, 2], |_, _| 0.0).into_iter().map(|Plain([x, y, z])| Plain([x + 2_f64.powi(-20), y, z]));
+    let points: Vec<_> = points.collect();
+    let net = Net::checked(2, 2, &points).unwrap();
+    let surface = Surface { number: 0, net, shape: Shape::of(&net) };
+    let mut whole = Fixed::<_, 9>::new();
+    project_net(&net, &planes, &mut whole).unwrap();
+    let exact = Exactness::of(&surface, &planes, &Limits::default());
+    let mut basis = Basis::<_, 3>::new();
+    let side = [0.5, 0.5 + f64::EPSILON].map(Number::new);
+    let region = Region { sides: [side; 2], ..Region::WHOLE };
+    let mut within = |held| nearest(&surface, &planes, &whole, &region, &exact, held, &mut basis.view()).unwrap();
+    assert!(within(1e-12).is_none());
+    assert_eq!(within(f64::INFINITY).unwrap().incidence, Incidence::Grazing);
+}
+
 fn roots(degrees: [usize; 2], points: &[Plain<f64>], ray: [[f64; 3]; 2]) -> (Vec<Root<Number<f64>>>, Work) {
     all(degrees, points, ray, &Limits::default(), Order::Any).unwrap()
 }

@@ -29,8 +29,20 @@ const RAYS: usize = 40;
 /// The sides of a picture, which is traced in place of rays of any kind for one surface in eight.
 const SIDES: [u32; 2] = [8, 5];
 
-/// The least sine of the angle between a ray and a plane whose border can be judged by a closed form.
-const STEEP: f64 = 1e-5;
+/// The least sine of the angle between a ray and a plane for which the number type holds more than that it is a tangent.
+fn steep(precision: Precision) -> f64 {
+    match precision {
+        Precision::F64 => 1e-5,
+        Precision::F32 => 4e-3,
+    }
+}
+
+/// What rounding a net's sums leaves of a point in `f32`, as a length: of a degree of 15 it is more than judges elsewhere allow for.
+fn blur(surface: &ModelSurface, precision: Precision) -> f64 {
+    let sums = 16 + surface.degree_u + surface.degree_v;
+    let rounding = if precision == Precision::F32 { 2.0 * f64::from(f32::EPSILON) } else { 0.0 };
+    rounding * sums as f64 * size(surface, &single(surface.clone()))
+}
 
 /// A surface in a plane across an axis, which its control points, being a rectangle's lattice, fill whatever their weights.
 fn flat(draw: &mut Draw) -> ModelSurface {
@@ -53,11 +65,11 @@ fn across(surface: &ModelSurface) -> Option<usize> {
 }
 
 /// Where a ray meets a surface that fills a rectangle across an axis.
-fn meet_rectangle(surface: &ModelSurface, axis: usize, ray: &RayLine) -> Truth {
+fn meet_rectangle(surface: &ModelSurface, axis: usize, ray: &RayLine, precision: Precision) -> Truth {
     let number = DoubleDouble::new;
     let speed = DVec3::from_array(ray.direction).length();
     let sine = (ray.direction[axis] / speed).abs();
-    if sine < STEEP {
+    if sine < steep(precision) {
         return Truth { open: true, ..Truth::default() };
     }
     let t = (number(surface.points[0][axis]) - number(ray.origin[axis])) / number(ray.direction[axis]);
@@ -84,10 +96,10 @@ fn meet_rectangle(surface: &ModelSurface, axis: usize, ray: &RayLine) -> Truth {
 
 /// What is true of the rays: by a closed form of what is flat or bilinear; how sure it is of the latter, and all of others, by
 /// the oracle.
-fn truths(case: &Case, rays: &[RayLine]) -> Vec<Truth> {
+fn truths(case: &Case, rays: &[RayLine], precision: Precision) -> Vec<Truth> {
     let surface = &case.model.surfaces[0];
     if let Some(axis) = across(surface) {
-        return rays.iter().map(|ray| meet_rectangle(surface, axis, ray)).collect();
+        return rays.iter().map(|ray| meet_rectangle(surface, axis, ray, precision)).collect();
     }
     let mut truths = truth::of_case(case, rays);
     if [surface.degree_u, surface.degree_v] == [1, 1] {
@@ -171,7 +183,7 @@ fn case(draw: &mut Draw, number: usize) -> Case {
         if let Some(axis) = across(surface)
             && index(&mut draw.random, 3) == 0
         {
-            direction[axis] *= 10_f64.powf(draw.random.within(STEEP.log10(), 0.0));
+            direction[axis] *= steep(draw.precision).powf(draw.random.within(0.0, 1.0));
         }
         ray(target - direction * distance, direction * 2_f64.powf(draw.random.within(-2.0, 2.0)))
     });
@@ -191,11 +203,12 @@ struct Count {
     short: usize,
 }
 
-/// What does not hold yet: in `f32` uneven weights leave less of the digits of t than even ones, of rays that are not clear; and of
-/// steep weights so many patches are made that the spans of a view's scan line run out.
-fn is_short(precision: Precision, clear: bool, outcome: &Outcome) -> bool {
+/// What does not hold yet. In `f32` weights may make a curve of much of a surface, to rounding, and which of its points the ray meets is
+/// not told: then t is less exact than of even weights, but never without being called a graze. And of steep weights so many patches
+/// are made that the spans of a view's scan line run out.
+fn is_short(precision: Precision, outcome: &Outcome) -> bool {
     match outcome {
-        Outcome::Hit(_) => precision == Precision::F32 && !clear,
+        Outcome::Hit(found) => precision == Precision::F32 && found.incidence != Incidence::Crossing,
         Outcome::GaveUp { limit, .. } => *limit == "spans",
         _ => false,
     }
@@ -211,7 +224,8 @@ fn no_ray_is_lost_on_a_rational_surface() {
             let mut draw = Draw { random: Random(Random(number as u64).bits()), rays: RAYS, precision };
             let case = in_precision(&case(&mut draw, number), precision);
             let lines = rays_of(&case);
-            let judge = Judge::by(&case, &lines, truths(&case, &lines), precision);
+            let judge = Judge::by(&case, &lines, truths(&case, &lines, precision), precision);
+            let blur = blur(&case.model.surfaces[0], precision);
             let methods: &[_] = if let Shot::Picture(_) = case.shot { &IN_VIEW } else { &METHODS };
             let (mut counts, mut wrong) = (BTreeMap::new(), Vec::new());
             for &method in methods {
@@ -224,14 +238,14 @@ fn no_ray_is_lost_on_a_rational_surface() {
                     let truth = judge.truth(place).expect("one for each ray");
                     let judged = !truth.open && truth.margin >= truth::least_margin(precision);
                     let clear = !truth.open && truth.margin >= truth::clear_margin(precision);
-                    let lost = judge.is_lost(place, outcome, 0.0);
+                    let lost = judge.is_lost(place, outcome, blur);
                     let given_up = clear && matches!(outcome, Outcome::GaveUp { .. } | Outcome::Refused(_));
                     count.rays += 1;
                     count.judged += usize::from(judged);
                     count.hits += usize::from(judged && truth.closest.is_some());
                     count.lost += usize::from(lost);
                     count.given_up += usize::from(given_up);
-                    let short = (lost || given_up) && is_short(precision, clear, outcome);
+                    let short = (lost || given_up) && is_short(precision, outcome);
                     count.short += usize::from(short);
                     if (lost || given_up) && !short {
                         let (name, precision) = (method.name(), precision.name());
@@ -269,7 +283,7 @@ fn no_ray_is_lost_on_a_rational_surface() {
 }
 
 /// The least sine of the angle between a ray and a plane at which nothing that `f64` holds lets the ray pass for a tangent.
-const CROSSING: f64 = 1e-4;
+const CROSSING: f64 = 1e-3;
 
 /// A plane is a plane whatever the weights of its points, which bend only what u and v are there. (In `f32`, where they make a curve
 /// of much of its domain to rounding, nothing tells the one from the other.)
@@ -298,7 +312,7 @@ fn a_ray_that_crosses_a_plane_is_no_tangent_of_it() {
             for method in METHODS {
                 let outcomes = trace(&model, &lines, method, precision);
                 for (outcome, ray) in outcomes.iter().zip(&lines).filter(|(_, ray)| sine(ray) > CROSSING) {
-                    let truth = meet_rectangle(surface, axis, ray);
+                    let truth = meet_rectangle(surface, axis, ray, precision);
                     let clear = truth.margin >= truth::clear_margin(precision);
                     let Outcome::Hit(Found { incidence, .. }) = outcome else { continue };
                     if clear && *incidence != Incidence::Crossing {
