@@ -69,12 +69,15 @@ pub(crate) fn distance(surface: &ModelSurface, ray: &RayLine, found: &Found, eno
         if way.length() <= enough {
             break;
         }
-        // A step of Gauss and Newton's method, along one parameter where the other leads nowhere; shorter until it leads nearer.
+        // A step of Gauss and Newton's method, along one parameter where the other leads nowhere, or out of the surface; shorter until
+        // it leads nearer.
         let ([a, b, c], [r, s]) = ([du.dot(du), du.dot(dv), dv.dot(dv)], [du.dot(way), dv.dot(way)]);
         let determinant = a * c - b * b;
-        let step = if determinant > 1e-20 * a * c {
-            [(c * r - b * s) / determinant, (a * s - b * r) / determinant]
-        } else if a > c {
+        let both = [(c * r - b * s) / determinant, (a * s - b * r) / determinant];
+        let held = |k: usize| (both[k] < 0.0 && at[k] <= Number::ZERO) || (both[k] > 0.0 && at[k] >= Number::ONE);
+        let step = if determinant > 1e-20 * a * c && !held(0) && !held(1) {
+            both
+        } else if if determinant > 1e-20 * a * c { held(1) } else { a > c } {
             [r / a, 0.0]
         } else {
             [0.0, s / c]
