@@ -92,11 +92,10 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Place<A> {
         let Place { at, local } = Place::polished(self.at, whole_domain, net.degrees(), whole, exact, basis)?;
         let mut depth = planes.depth_on(net, at, basis).map_err(|Full| Limit::Scratch)?;
         if !grazing {
-            // Where the least step of u or v that the number type holds is a way in space, the depth is known better than they
-            // can be said.
-            let unsaid = |step: &[S; 2]| {
-                step.iter().all(|c| c.abs() <= S::EPSILON * S::from_u32(4)) && !local.may_be_singular(exact.reach)
-            };
+            // Where the least step of u or v that can be told there is a way in space, the depth is known better than they can be said.
+            let told = |at: A, step: S| at.plus(step * S::from_f64(0.25)) != at;
+            let unsaid =
+                |&[du, dv]: &[S; 2]| !told(at[0], du) && !told(at[1], dv) && !local.may_be_singular(exact.reach);
             if let Some([du, dv]) = local.step().filter(unsaid) {
                 depth += along[0] * du + along[1] * dv;
             }
