@@ -103,8 +103,9 @@ pub(crate) fn first_met<P: Point, const N: usize>(
 ) -> Result<Option<Met<P::Parameter>>, Limit> {
     let allowed = exact.allowed() + error;
     // In order of worth: whether it lies before the interval; whether it passes the ray by more than rounding, as where the surface
-    // leaves the ray slowly all within the tolerance; and its depth, or, of what is no stretch, its distance.
-    let (mut first, mut closest) = (None, None);
+    // leaves the ray slowly all within the tolerance; if it is held by no more than its net's error, its distance; and its depth.
+    let mut least = None;
+    let mut best = None;
     let (mut nearest, mut farthest) = (P::Scalar::INFINITY, P::Scalar::LEAST);
     for place in places {
         let distance = place.local.distance();
@@ -113,18 +114,14 @@ pub(crate) fn first_met<P: Point, const N: usize>(
         }
         let depth = planes.depth_on(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
         (nearest, farthest) = (nearest.lesser(depth), farthest.greater(depth));
-        let before = planes.is_before_interval(depth);
-        let rank = (before, distance > exact.rounding + planes.noise(), distance.greater(exact.allowed()), depth);
-        if first.as_ref().is_none_or(|(least, _)| rank < *least) {
-            first = Some((rank, place));
-        }
-        if closest.as_ref().is_none_or(|(least, _)| (before, distance) < *least) {
-            closest = Some(((before, distance), place));
+        let faults = [planes.is_before_interval(depth), distance > exact.rounding + planes.noise()];
+        let rank = (faults, distance.greater(exact.allowed()), depth);
+        if least.is_none_or(|least| rank < least) {
+            (least, best) = (Some(rank), Some(place));
         }
     }
-    let (Some((_, first)), Some((_, closest))) = (first, closest) else { return Ok(None) };
+    let Some(place) = best else { return Ok(None) };
     let stretch = farthest - nearest;
-    let place = if stretch > exact.size * P::Scalar::from_f64(CONTACT) { first } else { closest };
     let mut incidence = Incidence::Crossing;
     if stretch > exact.size * P::Scalar::from_f64(CONTACT) {
         incidence = Incidence::Contact;

@@ -48,7 +48,6 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Root<A> {
 }
 
 /// Where a search ended: (u, v), and the surface there or nearby.
-#[derive(Clone, Copy)]
 pub(crate) struct Place<A: Parameter> {
     pub(crate) at: [A; 2],
     pub(crate) local: Local<A>,
