@@ -10,13 +10,14 @@
 //! (1997) found, where a region shrinks to a point that the ray passes by.
 
 use crate::bernstein::{BasisView, Direction, Full};
-use crate::clip::{Clip, chords, clip, corners, turned, unit};
+use crate::clip::{Clip, chords, clip, corners, turned};
 use crate::contract::{Contraction, Single, contract, is_provable, single};
 use crate::graze::{Across, Met, across, first_met, on_line, polished};
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::local::{Exactness, Local};
 use crate::parameter::Parameter;
 use crate::part::Part;
+use crate::passed::{all_pass, passes};
 use crate::planes::{Planes, project_net};
 use crate::point::Point;
 use crate::ray::Incidence;
@@ -273,8 +274,7 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                             if passes(surface, whole, &part.region, Some(turned(along)), exact, basis)? {
                                 Step::Done(None)
                             } else {
-                                let held = part.error * P::Scalar::from_u32(HELD);
-                                match on_line(surface, planes, whole, &part.region, along, exact, held, basis)? {
+                                match on_line(surface, planes, whole, &part.region, along, exact, part.error, basis)? {
                                     Some(met) => Step::Done(Some(met)),
                                     None => halves(),
                                 }
@@ -286,8 +286,9 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                 Clip::Settled => Step::Settled,
             };
             if let (Step::Settled, true) = (&step, settled) {
-                let held = part.error * P::Scalar::from_u32(HELD);
-                step = match nearest(surface, planes, whole, &part.region, exact, held, basis)? {
+                // A region as small as the error of its net, or as thin, holds a root, a grazing one, if some place of it passes the ray
+                // by no more than that.
+                step = match nearest(surface, planes, whole, &part.region, exact, part.error, basis)? {
                     Some(met) => Step::Done(Some(met)),
                     None if all_pass(surface, whole, part, exact, basis)? => Step::Done(None),
                     // Between lines that are near parallel both clips may settle too soon.
@@ -387,11 +388,6 @@ enum Step<A: Parameter> {
     Done(Option<Met<A>>),
 }
 
-/// A region that is as small as the error of its net, or as thin, holds a root, a grazing one, if some place of it passes the ray by
-/// no more than so many times that. Smaller proves of more regions that the ray passes them by, by halving them; larger takes more
-/// near misses for grazes.
-const HELD: u32 = 1;
-
 /// Of a region whose points all pass the ray within the tolerance or the error of their net, the one that the ray meets
 /// first, in its interval if one is; from its corners, the middles of its sides and its middle, each brought nearer by Newton's
 /// method. `None` if the ray passes all of them by, by more than what is allowed and `held`, as it may at a phantom hit.
@@ -414,45 +410,6 @@ fn nearest<P: Point>(
     let [a, b, c, d] = corners;
     let places = [from([u, v])?, a, b, c, d, from([u0, v])?, from([u1, v])?, from([u, v0])?, from([u, v1])?];
     first_met(surface, planes, places, exact, held, basis)
-}
-
-/// Whether the ray is proved to pass all of a region by more than rounding: it passes a corner by more than the others lie from
-/// that, as the net tells; or, within the net's error, by what [`passes`] says.
-#[cold]
-#[inline(never)]
-fn all_pass<P: Point>(
-    surface: &Surface<'_, P>,
-    whole: &[P::Flat],
-    part: &Part<'_, P::Flat>,
-    exact: &Exactness<P::Scalar>,
-    basis: &mut BasisView<'_, P::Scalar>,
-) -> Result<bool, Limit> {
-    let [[u, _], [v, _]] = part.region.sides;
-    let corner = Local::at([u, v], surface.net.degrees(), whole, basis)?;
-    if corner.distance() > part.extent() + part.error + exact.rounding {
-        return Ok(true);
-    }
-    passes(surface, whole, &part.region, None, exact, basis)
-}
-
-/// Whether the ray is proved by Taylor's theorem to pass all of a region by more than rounding in the direction of this unit vector
-/// of the two planes' system, or in that in which it passes the middle.
-#[cold]
-#[inline(never)]
-fn passes<P: Point>(
-    surface: &Surface<'_, P>,
-    whole: &[P::Flat],
-    region: &Region<P::Parameter>,
-    direction: Option<[P::Scalar; 2]>,
-    exact: &Exactness<P::Scalar>,
-    basis: &mut BasisView<'_, P::Scalar>,
-) -> Result<bool, Limit> {
-    let [half_u, half_v] = region.widths().map(|width| width * P::Scalar::HALF);
-    let local = Local::at(region.middle(), surface.net.degrees(), whole, basis)?;
-    // Of a rational surface all is of the numerator over the weight at the middle.
-    let (off, [by_u, by_v]) = local.seen_along(direction.unwrap_or_else(|| unit(local.off())));
-    let strays = local.unweighted::<P::Flat>(surface.strays([half_u, half_v]));
-    Ok(off.abs() > by_u.abs() * half_u + by_v.abs() * half_v + strays + exact.rounding)
 }
 
 #[cfg(test)]

@@ -120,13 +120,7 @@ pub(crate) fn contract<P: Point>(
             }
             // A root that rounding has moved out of its region is where it is; one beyond the surface's edge is held there. Of a rational
             // surface it is held beside the region, within which the weight varies little, while beyond it may fall to nothing.
-            let mut within = Region::<P::Parameter>::WHOLE;
-            if P::RATIONAL {
-                for (k, side) in within.sides.iter_mut().enumerate() {
-                    let [low, high] = region.sides[k];
-                    *side = [side[0].later(low.plus(-halves[k])), side[1].earlier(high.plus(halves[k]))];
-                }
-            }
+            let within = if P::RATIONAL { region.around(P::Scalar::HALF) } else { Region::WHOLE };
             let at = within.nearest(next);
             if local.may_hold(off(next, region.nearest(next)), &loose) && local.may_hold(off(next, at), exact) {
                 return Ok(Contraction::Done(Some(Place { at, local })));

@@ -162,10 +162,7 @@ pub(crate) fn polished<P: Point>(
     exact: &Exactness<P::Scalar>,
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Place<P::Parameter>, Limit> {
-    let around = region.sides.map(|[low, high]| {
-        let reach = high.minus(low) * P::Scalar::from_u32(REACH);
-        [low.plus(-reach).later(P::Parameter::ZERO), high.plus(reach).earlier(P::Parameter::ONE)]
-    });
+    let around = region.around(P::Scalar::from_u32(REACH)).sides;
     Place::polished(at, around, surface.net.degrees(), whole, exact, basis)
 }
 

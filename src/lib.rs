@@ -113,6 +113,7 @@ pub mod region;
 pub mod clip;
 mod graze;
 mod part;
+mod passed;
 mod roots;
 
 pub mod clipper;

@@ -48,6 +48,16 @@ impl<A: Parameter> Region<A> {
         [u.held(u0, u1), v.held(v0, v1)]
     }
 
+    /// It and what lies beside it, on each side so many times as wide, within the domain.
+    #[inline(always)]
+    pub(crate) fn around(&self, times: A::Scalar) -> Self {
+        let sides = self.sides.map(|[low, high]| {
+            let reach = high.minus(low) * times;
+            [low.plus(-reach).later(A::ZERO), high.plus(reach).earlier(A::ONE)]
+        });
+        Region { sides, ..*self }
+    }
+
     /// Becomes its part [from, to] in one parameter, counted across it from 0 to 1.
     #[inline(always)]
     pub fn narrow(&mut self, direction: Direction, part: [A::Scalar; 2]) {

@@ -3,6 +3,7 @@
 //!
 //! `PATCHRAY_RAYS=N` asks for N rays of each kind instead of few.
 
+mod aim;
 mod cases;
 mod edges;
 mod rational;

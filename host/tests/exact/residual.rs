@@ -74,10 +74,11 @@ pub(crate) fn distance(surface: &ModelSurface, ray: &RayLine, found: &Found, eno
         let ([a, b, c], [r, s]) = ([du.dot(du), du.dot(dv), dv.dot(dv)], [du.dot(way), dv.dot(way)]);
         let determinant = a * c - b * b;
         let both = [(c * r - b * s) / determinant, (a * s - b * r) / determinant];
-        let held = |k: usize| (both[k] < 0.0 && at[k] <= Number::ZERO) || (both[k] > 0.0 && at[k] >= Number::ONE);
-        let step = if determinant > 1e-20 * a * c && !held(0) && !held(1) {
+        let leaves = |k: usize| (both[k] < 0.0 && at[k] <= Number::ZERO) || (both[k] > 0.0 && at[k] >= Number::ONE);
+        let regular = determinant > 1e-20 * a * c;
+        let step = if regular && !leaves(0) && !leaves(1) {
             both
-        } else if if determinant > 1e-20 * a * c { held(1) } else { a > c } {
+        } else if (regular && leaves(1)) || (!regular && a > c) {
             [r / a, 0.0]
         } else {
             [0.0, s / c]
