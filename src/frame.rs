@@ -57,6 +57,13 @@ impl<S: Scalar> Aabb<S> {
         grown
     }
 
+    /// The box as seen from `origin`; its sides are rounded.
+    #[must_use]
+    pub fn relative(self, origin: [S; 3]) -> Self {
+        let from = |corner: [S; 3]| core::array::from_fn(|k| corner[k] - origin[k]);
+        Aabb { low: from(self.low), high: from(self.high) }
+    }
+
     /// The smallest box that also holds `other`.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
@@ -189,6 +196,11 @@ impl<S: Scalar> Frame<S> {
     /// A point of the nets' coordinates in the frame; exact.
     pub fn from_nets(&self, point: [S; 3]) -> [S; 3] {
         point.map(|c| c.times_power_of_two(self.exponent))
+    }
+
+    /// A point of the nets' coordinates that lies in the frame; exact.
+    pub(crate) fn to_nets(self, point: [S; 3]) -> [S; 3] {
+        point.map(|c| c * self.unscale)
     }
 
     /// A point of the caller's coordinates in the nets': rounded once per coordinate unless the origin is 0.

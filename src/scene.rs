@@ -12,9 +12,9 @@ use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray, RayError};
 use crate::root::Root;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, Vector3};
 use crate::story::Event;
-use crate::surface::{Net, NetError, Shape, Surface};
+use crate::surface::{APART, Net, NetError, Shape, Surface};
 
 /// A surface as a slot of lent memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,25 +36,29 @@ impl<S: Scalar> SurfaceSlot<S> {
 
     /// The slot that holds these numbers. For tables; see [`LAYOUT`](crate::LAYOUT).
     ///
-    /// They are the box's least and largest corner, then [`Shape`]'s bend, and its size, reach and least weight; then the first of
-    /// its control points, and the degrees in u and v.
-    pub const fn from_numbers([low, high, bend, shape]: [[S; 3]; 4], [first, degree_u, degree_v]: [u32; 3]) -> Self {
+    /// They are the box's least and largest corner, then [`Shape`]'s bend, its size, reach and least weight, and its origin; then
+    /// the first of its control points, and the degrees in u and v.
+    pub const fn from_numbers(
+        [low, high, bend, shape, origin]: [[S; 3]; 5],
+        [first, degree_u, degree_v]: [u32; 3],
+    ) -> Self {
         let [size, reach, lightest] = shape;
-        let shape = Shape { bend, size, reach, lightest };
+        let shape = Shape { bend, size, reach, lightest, origin };
         SurfaceSlot { bounds: Aabb { low, high }, shape, first, degree_u, degree_v }
     }
 
     /// What [`SurfaceSlot::from_numbers`] takes.
-    pub const fn numbers(&self) -> ([[S; 3]; 4], [u32; 3]) {
-        let Shape { bend, size, reach, lightest } = self.shape;
-        ([self.bounds.low, self.bounds.high, bend, [size, reach, lightest]], [self.first, self.degree_u, self.degree_v])
+    pub const fn numbers(&self) -> ([[S; 3]; 5], [u32; 3]) {
+        let Shape { bend, size, reach, lightest, origin } = self.shape;
+        let lengths = [self.bounds.low, self.bounds.high, bend, [size, reach, lightest], origin];
+        (lengths, [self.first, self.degree_u, self.degree_v])
     }
 }
 
 /// Lent memory for a scene.
 #[derive(Debug)]
 pub struct SceneMemory<'m, P: Point> {
-    /// Control points of all surfaces, in the frame.
+    /// Control points of all surfaces, in the frame, relative to the surfaces' own origins.
     pub points: &'m mut [P],
     /// One slot per surface.
     pub surfaces: &'m mut [SurfaceSlot<P::Scalar>],
@@ -167,33 +171,58 @@ impl<'m, P: Point> Scene<'m, P> {
         options: &SceneOptions<P::Scalar>,
         memory: SceneMemory<'m, P>,
     ) -> Result<Self, SceneError> {
-        Scene::build_from(nets.len(), |k| nets.get(k).copied(), options, memory)
+        Scene::build_apart(nets, &[], options, memory)
     }
 
-    /// The same from `count` nets that `net` gives by their numbers, each as often as it is asked for.
+    /// The same from nets each of which is given relative to an origin of its own beside that, by its number; 0 where there is none.
+    /// From that its coordinates must be less than an eighth of the scene's.
+    ///
+    /// A small surface in a large scene is met to the rounding of its own coordinates. With a net that is given relative to a
+    /// point near it, such as [`exact_origin`](crate::frame::exact_origin) of its own box, that is the rounding of its size.
+    /// A ray is brought near such a surface by some 250 instructions, and there is no view of them: [`ViewError::Near`].
+    ///
+    /// [`ViewError::Near`]: crate::view::ViewError::Near
+    pub fn build_apart(
+        nets: &[Net<'_, P>],
+        origins: &[[P::Scalar; 3]],
+        options: &SceneOptions<P::Scalar>,
+        memory: SceneMemory<'m, P>,
+    ) -> Result<Self, SceneError> {
+        let own = |k: usize| origins.get(k).copied().unwrap_or([P::Scalar::ZERO; 3]);
+        Scene::build_from(nets.len(), |k| Some((*nets.get(k)?, own(k))), options, memory)
+    }
+
+    /// The same from `count` nets and their origins that `net` gives by their numbers, each as often as it is asked for.
     pub(crate) fn build_from<'n>(
         count: usize,
-        net: impl Fn(usize) -> Option<Net<'n, P>>,
+        net: impl Fn(usize) -> Option<(Net<'n, P>, [P::Scalar; 3])>,
         options: &SceneOptions<P::Scalar>,
         memory: SceneMemory<'m, P>,
     ) -> Result<Self, SceneError> {
         let nets = || (0..count).map_while(&net);
         let mut bounds = Aabb::EMPTY;
-        for (surface, net) in (0_u32..).zip(nets()) {
-            Net::checked(net.degree_u(), net.degree_v(), net.points())
-                .map_err(|error| SceneError::Surface { surface, error })?;
-            bounds = bounds.union(control_box(&net));
+        for (surface, (net, origin)) in (0_u32..).zip(nets()) {
+            let refused = |error| SceneError::Surface { surface, error };
+            Net::checked(net.degree_u(), net.degree_v(), net.points()).map_err(refused)?;
+            let own = control_box(&net, origin);
+            if !origin.iter().chain(&own.low).chain(&own.high).all(|c| c.is_finite()) {
+                return Err(refused(NetError::Origin));
+            }
+            bounds = bounds.union(own);
         }
         let frame = Frame::new(bounds).with_origin(options.origin);
         let mut points = Arena::new(memory.points);
         let mut surfaces = Arena::new(memory.surfaces);
         let boxes = |k: usize| {
-            let scaled = net(k).as_ref().map_or(Aabb::EMPTY, control_box);
+            let scaled = net(k).map_or(Aabb::EMPTY, |(net, origin)| control_box(&net, origin));
             let [low, high] = [scaled.low, scaled.high].map(|corner| frame.from_nets(corner));
             Aabb { low, high }.padded(Frame::padding())
         };
-        for (k, net) in nets().enumerate() {
+        for (k, (net, origin)) in nets().enumerate() {
             let first = u32::try_from(points.len()).map_err(|_| SceneError::TooLarge)?;
+            if origin != [P::Scalar::ZERO; 3] && !is_near(&frame, control_box(&net, [P::Scalar::ZERO; 3])) {
+                return Err(SceneError::Surface { surface: k as u32, error: NetError::Origin });
+            }
             // Weights matter up to a common factor: the largest is brought near 1, exactly.
             let heaviest = net.points().iter().fold(P::Scalar::ZERO, |w, p| w.greater(p.weight()));
             let weight = if P::RATIONAL { -heaviest.binary_exponent() } else { 0 };
@@ -202,7 +231,7 @@ impl<'m, P: Point> Scene<'m, P> {
             }
             let shape = points.since(first as usize).map_or(Shape::EMPTY, |scaled| {
                 let scaled = Net::new(net.degree_u(), net.degree_v(), &*scaled);
-                scaled.map_or(Shape::EMPTY, |scaled| Shape::of(&scaled))
+                scaled.map_or(Shape::EMPTY, |scaled| Shape { origin: frame.from_nets(origin), ..Shape::of(&scaled) })
             });
             let (degree_u, degree_v) = (net.degree_u() as u32, net.degree_v() as u32);
             surfaces.push(SurfaceSlot { bounds: boxes(k), shape, first, degree_u, degree_v });
@@ -292,9 +321,9 @@ impl<'m, P: Point> Scene<'m, P> {
         (0..self.len()).map_while(|k| self.surface(k))
     }
 
-    /// Whether the scene holds surfaces to which rays have to be brought with care.
-    pub(crate) fn has_apart(&self) -> bool {
-        self.surfaces.iter().any(|slot| slot.shape.is_apart())
+    /// What is known of each surface.
+    pub(crate) fn shapes(&self) -> impl Iterator<Item = &'m Shape<P::Scalar>> {
+        self.surfaces.iter().map(|slot| &slot.shape)
     }
 
     /// The unit normal at a hit, along ∂S/∂u × ∂S/∂v; `None` where there is none, as at the apex of a cone. See
@@ -396,8 +425,9 @@ impl<'m, P: Point> Scene<'m, P> {
                 let surface = self.surface(number).ok_or(Limit::Slot)?;
                 P::Scalar::tell(|| Event::Surface(surface.number));
                 farthest = farthest.lesser(if slot.shape.is_apart() {
+                    let shape = &slot.shape;
                     let Some((near, range)) =
-                        self.header.frame.enter_near(ray, interval, &slot.bounds, slot.shape.unit())
+                        self.header.frame.enter_near(ray, interval, &slot.bounds, shape.origin, shape.unit())
                     else {
                         continue;
                     };
@@ -419,9 +449,16 @@ impl<'m, P: Point> Scene<'m, P> {
     }
 }
 
-/// The box of a net's control points, in the caller's coordinates.
-fn control_box<P: Point>(net: &Net<'_, P>) -> Aabb<P::Scalar> {
-    net.points().iter().fold(Aabb::EMPTY, |all, p| all.with(p.position()))
+/// Whether coordinates in this box are as small as those of a net with an origin of its own have to be.
+fn is_near<S: Scalar>(frame: &Frame<S>, bounds: Aabb<S>) -> bool {
+    let largest = |corner: [S; 3]| S::Vec3::from_array(frame.from_nets(corner)).largest();
+    largest(bounds.low).greater(largest(bounds.high)) < S::from_f32(APART)
+}
+
+/// The box of a net's control points, in the nets' coordinates; `origin` is the net's own.
+fn control_box<P: Point>(net: &Net<'_, P>, origin: [P::Scalar; 3]) -> Aabb<P::Scalar> {
+    let of_net = net.points().iter().fold(Aabb::EMPTY, |all, p| all.with(p.position()));
+    of_net.relative(origin.map(|c| -c))
 }
 
 #[cfg(test)]

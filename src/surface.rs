@@ -28,6 +28,8 @@ pub enum NetError {
     NotFinite(usize),
     /// The point of this index has a weight that is not positive.
     Weight(usize),
+    /// The net's own origin, or a point beside it, is not finite; or the points lie an eighth of the scene or more from it, along an axis.
+    Origin,
 }
 
 impl core::fmt::Display for NetError {
@@ -38,6 +40,7 @@ impl core::fmt::Display for NetError {
             NetError::Points(need) => write!(f, "{} control points, not {}", need.given, need.needed),
             NetError::NotFinite(k) => write!(f, "control point {k} is not finite"),
             NetError::Weight(k) => write!(f, "the weight of control point {k} is not positive"),
+            NetError::Origin => f.write_str("the control points are not near the net's own origin"),
         }
     }
 }
@@ -177,7 +180,7 @@ impl<'m, P: Point> Net<'m, P> {
 pub struct Surface<'m, P: Point> {
     /// Its number in the scene, from 0.
     pub number: u32,
-    /// Its control net, in the frame.
+    /// Its control net, in the frame, relative to [`Shape::origin`].
     pub net: Net<'m, P>,
     /// What is known of it beforehand.
     pub shape: Shape<P::Scalar>,
@@ -195,13 +198,16 @@ pub struct Shape<S> {
     pub reach: S,
     /// Its least weight; 1 without weights.
     pub lightest: S,
+    /// Where the net's coordinates are 0, in the frame: 0, unless the surface has an origin of its own.
+    pub origin: [S; 3],
 }
 
 impl<S: Scalar> Shape<S> {
     /// Of nothing.
-    pub const EMPTY: Self = Shape { bend: [S::ZERO; 3], size: S::ZERO, reach: S::ZERO, lightest: S::ZERO };
+    pub const EMPTY: Self =
+        Shape { bend: [S::ZERO; 3], size: S::ZERO, reach: S::ZERO, lightest: S::ZERO, origin: [S::ZERO; 3] };
 
-    /// Of a net in the frame.
+    /// Of a net in the frame, without an origin of its own.
     pub(crate) fn of<P: Point<Scalar = S>>(net: &Net<'_, P>) -> Self {
         let longest = |vector: [S; 3]| S::Vec3::from_array(vector).largest();
         let (mut reach, mut low, mut high) = (S::ZERO, [S::INFINITY; 3], [S::LEAST; 3]);
@@ -212,7 +218,7 @@ impl<S: Scalar> Shape<S> {
         }
         let sides = core::array::from_fn(|k| high[k] - low[k]);
         let lightest = net.points().iter().fold(S::INFINITY, |least, point| least.lesser(point.weight()));
-        let shape = Shape { bend: [S::ZERO; 3], size: longest(sides), reach, lightest };
+        let shape = Shape { size: longest(sides), reach, lightest, ..Shape::EMPTY };
         Shape { bend: net.bend(shape.unit()), ..shape }
     }
 
@@ -221,6 +227,11 @@ impl<S: Scalar> Shape<S> {
     #[inline(always)]
     pub(crate) fn is_apart(&self) -> bool {
         self.reach < S::from_f32(APART)
+    }
+
+    /// Whether its net has an origin of its own.
+    pub(crate) fn is_moved(&self) -> bool {
+        self.origin != [S::ZERO; 3]
     }
 
     /// Bounds the coordinates of the surface and of rays near it.

@@ -87,8 +87,8 @@ pub enum ViewError {
     /// The eye's largest |coordinate| is more than eight units of the frame, eight to sixteen times that of the scene: near to parallel, its rays
     /// would lose digits. They can be traced one by one.
     Far,
-    /// The eye is near 0, as the scene goes, and so are surfaces much smaller than the scene: turned together with all else they
-    /// would be met less exactly than rays one by one meet them.
+    /// Surfaces are much smaller than the scene, and have origins of their own; or they and the eye are near 0, as the scene goes:
+    /// turned together with all else they would be met less exactly than rays one by one meet them.
     Near,
     /// The patches are of more or fewer surfaces than the scene has: they are another scene's.
     Patches,
@@ -103,7 +103,9 @@ impl core::fmt::Display for ViewError {
             ViewError::Ray(error) => write!(f, "the ray of the middle: {error}"),
             ViewError::Flat => f.write_str("the camera's vectors lie in a plane"),
             ViewError::Far => f.write_str("the eye is farther away than eight times the scene's size"),
-            ViewError::Near => f.write_str("the eye is among surfaces that are much smaller than the scene"),
+            ViewError::Near => f.write_str(
+                "surfaces that are much smaller than the scene have origins of their own, or the eye is among them",
+            ),
             ViewError::Patches => f.write_str("the patches are of another scene"),
             ViewError::TooLarge => f.write_str("more patches than 32 bits can count"),
         }
@@ -348,7 +350,7 @@ fn lens_of<P: Point>(
     }
     let lens = Lens::of(scene.frame(), camera)?;
     // The ray's own coordinates are then much smaller than the scene's, too.
-    if scene.has_apart() && lens.eye_is_apart() {
+    if scene.shapes().any(|shape| shape.is_moved() || shape.is_apart() && lens.eye_is_apart()) {
         return Err(ViewError::Near);
     }
     Ok(lens)

@@ -23,8 +23,8 @@ mod view;
 mod worst_case;
 
 pub use error::LowerError;
-pub use place::Place;
-use place::{origin_of, relative};
+use place::Origins;
+pub use place::{Place, at_hand};
 
 /// One more than the highest degree: the capacity of the scratch, so that it serves every valid surface.
 pub const ORDER: usize = MAX_DEGREE + 1;
@@ -34,19 +34,19 @@ pub const NET: usize = ORDER * ORDER;
 
 /// A kernel point that can be made from a file's numbers.
 pub trait FromFile: Point {
-    /// The point `[x, y, z, w]` of a file relative to `origin`, rounded to this precision; the weight is not multiplied in.
-    fn from_file(point: [f64; 4], origin: [Self::Scalar; 3]) -> Self;
+    /// The point `[x, y, z, w]`, rounded to this precision; the weight is not multiplied in.
+    fn from_file(point: [f64; 4]) -> Self;
 }
 
 impl<S: Scalar> FromFile for Plain<S> {
-    fn from_file([x, y, z, _]: [f64; 4], origin: [S; 3]) -> Self {
-        Plain(relative([x, y, z], origin))
+    fn from_file([x, y, z, _]: [f64; 4]) -> Self {
+        Plain([x, y, z].map(S::from_f64))
     }
 }
 
 impl<S: Scalar> FromFile for Weighted<S> {
-    fn from_file([x, y, z, w]: [f64; 4], origin: [S; 3]) -> Self {
-        Weighted::new(relative([x, y, z], origin), S::from_f64(w))
+    fn from_file([x, y, z, w]: [f64; 4]) -> Self {
+        Weighted::new([x, y, z].map(S::from_f64), S::from_f64(w))
     }
 }
 
@@ -110,17 +110,21 @@ pub struct Preparation<S> {
     pub grid: GridOptions<S>,
     /// How fine the grid over surfaces is.
     pub scene: SceneOptions<S>,
+    /// Whether surfaces much smaller than the scene are given relative to origins of their own, by which they are met more exactly.
+    /// There is no view of them.
+    pub own_origins: bool,
     /// The most bytes that all slots together may take; `u64::MAX` for no bound.
     pub arena_bytes: u64,
 }
 
 impl<S: Scalar> Default for Preparation<S> {
-    /// The kernel's defaults, and no bound on bytes.
+    /// The kernel's defaults, origins for small surfaces, and no bound on bytes.
     fn default() -> Self {
         Preparation {
             subdivision: Subdivision::default(),
             grid: GridOptions::default(),
             scene: SceneOptions::default(),
+            own_origins: true,
             arena_bytes: u64::MAX,
         }
     }
@@ -146,9 +150,17 @@ pub struct Lowered<P: Point> {
     view: view::ViewSlots<P>,
 }
 
-/// The control points of a surface in the kernel's type, relative to `origin`, checked.
-fn points_of<P: FromFile>(surface: &ModelSurface, origin: [P::Scalar; 3]) -> Result<Vec<P>, String> {
-    let points: Vec<P> = surface.points.iter().map(|&point| P::from_file(point, origin)).collect();
+/// The control points of a surface in the kernel's type, relative to its origins, checked.
+fn points_of<P: FromFile>(
+    surface: &ModelSurface,
+    index: usize,
+    origins: &Origins<P::Scalar>,
+) -> Result<Vec<P>, String> {
+    let relative = |&[x, y, z, w]: &[f64; 4]| {
+        let [x, y, z] = origins.relative(index, [x, y, z]);
+        P::from_file([x, y, z, w])
+    };
+    let points: Vec<P> = surface.points.iter().map(relative).collect();
     Net::checked(surface.degree_u, surface.degree_v, &points).map_err(|error| error.to_string())?;
     Ok(points)
 }
@@ -156,8 +168,9 @@ fn points_of<P: FromFile>(surface: &ModelSurface, origin: [P::Scalar; 3]) -> Res
 /// The index in `model`, and the reason, of each surface that this point type cannot hold: one that is not valid in the
 /// file, or whose numbers overflow, or whose weights vanish, in `f32`.
 pub fn unfit<P: FromFile>(model: &Model) -> Vec<(usize, String)> {
-    let origin = origin_of(model);
-    let reasons = model.surfaces.iter().map(|surface| points_of::<P>(surface, origin).err());
+    let origins = Origins::of(model, true);
+    let of = |(index, surface)| points_of::<P>(surface, index, &origins).err();
+    let reasons = model.surfaces.iter().enumerate().map(of);
     reasons.enumerate().filter_map(|(index, reason)| Some((index, reason?))).collect()
 }
 
@@ -168,10 +181,10 @@ impl<P: FromFile> Lowered<P> {
     /// A surface that the number type cannot hold, or more memory than there is or may be used.
     pub fn build(model: &Model, stages: Stages, preparation: &Preparation<P::Scalar>) -> Result<Self, LowerError> {
         let numbers = |index: u32| model.surfaces.get(index as usize).map_or(0, |surface| surface.number);
-        let origin = origin_of(model);
+        let origins = Origins::of(model, preparation.own_origins);
         let mut nets_points = Vec::new();
         for (index, surface) in model.surfaces.iter().enumerate() {
-            nets_points.push(points_of::<P>(surface, origin).map_err(|reason| LowerError::Surface {
+            nets_points.push(points_of::<P>(surface, index, &origins).map_err(|reason| LowerError::Surface {
                 index,
                 number: surface.number,
                 reason,
@@ -183,7 +196,7 @@ impl<P: FromFile> Lowered<P> {
             nets.push(net.map_err(|error| LowerError::Internal(error.to_string()))?);
         }
         let mut slots = Slots::new(preparation.arena_bytes);
-        let mut lowered = Self::scene_of(&nets, &SceneOptions { origin, ..preparation.scene }, stages, &mut slots)?;
+        let mut lowered = Self::scene_of(&nets, &origins, &preparation.scene, stages, &mut slots)?;
         let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());
         if diagonal > 0.0 && !(lowered.scene().frame().diagonal() > P::Scalar::ZERO) {
             return Err(LowerError::Vanishes { diagonal });
@@ -199,6 +212,7 @@ impl<P: FromFile> Lowered<P> {
 
     fn scene_of(
         nets: &[Net<'_, P>],
+        origins: &Origins<P::Scalar>,
         options: &SceneOptions<P::Scalar>,
         stages: Stages,
         slots: &mut Slots,
@@ -207,8 +221,9 @@ impl<P: FromFile> Lowered<P> {
             SceneError::TooLarge => LowerError::TooLarge(error.to_string()),
             _ => LowerError::Internal(error.to_string()),
         };
+        let options = &SceneOptions { origin: origins.scene, ..*options };
         let nothing = SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] };
-        let needs = match Scene::build(nets, options, nothing) {
+        let needs = match Scene::build_apart(nets, &origins.own, options, nothing) {
             Ok(_) => Default::default(),
             Err(SceneError::Memory(needs)) => needs,
             Err(error) => return Err(refused(error)),
@@ -228,7 +243,7 @@ impl<P: FromFile> Lowered<P> {
             offsets: &mut offsets,
             references: &mut references,
         };
-        let header = Scene::build(nets, options, memory).map_err(refused)?.header();
+        let header = Scene::build_apart(nets, &origins.own, options, memory).map_err(refused)?.header();
         Ok(Lowered {
             stages,
             header,

@@ -237,6 +237,7 @@ impl Settings {
         preparation.subdivision.depth = self.limits.depth;
         preparation.subdivision.patches_per_surface = self.limits.patches_per_surface;
         preparation.grid.density = S::from_f64(self.grid_density);
+        preparation.own_origins = !self.method.needs_view();
         preparation.arena_bytes = self.limits.arena_bytes.unwrap_or(u64::MAX);
         preparation
     }

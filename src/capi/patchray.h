@@ -238,7 +238,7 @@
 #define PATCHRAY_GAVE_UP_SPANS -50
 
 // The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
-#define PATCHRAY_LAYOUT 3
+#define PATCHRAY_LAYOUT 4
 
 // What a hit's `surface` is where there is none.
 #define PATCHRAY_NO_SURFACE 4294967295
@@ -303,8 +303,8 @@ typedef struct {
 
 // A surface of a scene: a slot of its table.
 typedef struct {
-  // Its box, the bounds on its second derivatives, its size, its largest coordinate, its least weight.
-  float numbers[12];
+  // Its box, the bounds on its second derivatives, its size, its largest coordinate, its least weight, its own origin.
+  float numbers[15];
   // Its first control point, and its degrees.
   uint32_t counts[3];
 } patchray_surface_f32;
@@ -614,8 +614,8 @@ typedef struct {
 
 // A surface of a scene: a slot of its table.
 typedef struct {
-  // Its box, the bounds on its second derivatives, its size, its largest coordinate, its least weight.
-  double numbers[12];
+  // Its box, the bounds on its second derivatives, its size, its largest coordinate, its least weight, its own origin.
+  double numbers[15];
   // Its first control point, and its degrees.
   uint32_t counts[3];
 } patchray_surface_f64;

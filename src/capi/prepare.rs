@@ -116,7 +116,7 @@ pub(super) unsafe fn scene_build<P: Point>(
     // SAFETY: the caller's.
     unsafe { check_nets::<P>(&lending, nets) }.map_err(wrong)?;
     // SAFETY: all nets were gone through.
-    let net = |k: usize| nets.get(k).and_then(|net| unsafe { net_of::<P>(net) }.ok());
+    let net = |k: usize| Some((unsafe { net_of::<P>(nets.get(k)?) }.ok()?, [P::Scalar::ZERO; 3]));
     // SAFETY: the caller's.
     let room = unsafe {
         SceneMemory {

@@ -134,7 +134,8 @@ pub(super) fn of_net(error: NetError) -> Code {
     match error {
         NetError::DegreeU(_) | NetError::DegreeV(_) => PATCHRAY_DEGREE,
         NetError::Points(_) => PATCHRAY_POINTS,
-        NetError::NotFinite(_) => PATCHRAY_POINT_NOT_FINITE,
+        // Nets are given without origins of their own.
+        NetError::NotFinite(_) | NetError::Origin => PATCHRAY_POINT_NOT_FINITE,
         NetError::Weight(_) => PATCHRAY_WEIGHT,
     }
 }

@@ -15,7 +15,7 @@ use crate::span::Span;
 use crate::view::{Sight, ViewHeader};
 
 /// The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
-pub const PATCHRAY_LAYOUT: u32 = 3;
+pub const PATCHRAY_LAYOUT: u32 = 4;
 
 /// What a hit's `surface` is where there is none.
 pub const PATCHRAY_NO_SURFACE: u32 = 0xffff_ffff;
@@ -83,8 +83,8 @@ pub struct patchray_options<S> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct patchray_surface<S> {
-    /// Its box, the bounds on its second derivatives, its size, its largest coordinate, its least weight.
-    pub numbers: [S; 12],
+    /// Its box, the bounds on its second derivatives, its size, its largest coordinate, its least weight, its own origin.
+    pub numbers: [S; 15],
     /// Its first control point, and its degrees.
     pub counts: [u32; 3],
 }

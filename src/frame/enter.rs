@@ -31,9 +31,10 @@ impl<S: Scalar> Frame<S> {
         Some((planes, DepthRange { min: S::ZERO, max: (end - start) * self.scale }))
     }
 
-    /// The same for one surface whose coordinates are much smaller than the scene's: the origin is moved to where the ray passes
-    /// the middle of the surface's box, given in the frame, which loses no digits to the way there. `reach` bounds the
-    /// coordinates of the surface and of rays near it.
+    /// The same for one surface whose coordinates, relative to its own origin, are much smaller than the scene's: the ray's origin
+    /// is moved to where the ray passes the middle of the surface's box, which loses no digits to the way there. The planes are
+    /// relative to `own`; `bounds` and `own` are given in the frame, and `reach` bounds the coordinates of the surface and of rays
+    /// near it.
     #[cold]
     #[inline(never)]
     pub(crate) fn enter_near(
@@ -41,14 +42,16 @@ impl<S: Scalar> Frame<S> {
         ray: &Ray<S>,
         interval: &Interval<S>,
         bounds: &Aabb<S>,
+        own: [S; 3],
         reach: S,
     ) -> Option<(Planes<S>, DepthRange<S>)> {
         let axis = ray.axis;
         let speed = axis.of(&ray.direction).abs();
         let direction = ray.direction.map(|c| c / speed);
         let inverse = ray.direction.map(|c| speed / c);
+        let bounds = bounds.relative(own);
         let middle = (axis.of(&bounds.low) + axis.of(&bounds.high)) * S::HALF * self.unscale;
-        let (origin, t) = self.moved(ray, axis, middle);
+        let (origin, t) = self.moved(ray, self.to_nets(own), axis, middle);
         let origin = origin.map(|c| c * self.scale);
         let (near, far) = bounds.depths(&origin, &inverse)?;
         let depth = |bound: S| (bound - t) * speed * self.scale;
@@ -65,20 +68,24 @@ impl<S: Scalar> Frame<S> {
     #[inline(never)]
     fn approach(&self, ray: &Ray<S>, axis: Axis) -> Option<([S; 3], S)> {
         let middle = (axis.of(&self.bounds.low) + axis.of(&self.bounds.high)) * S::HALF;
-        let (origin, t) = self.moved(ray, axis, middle);
+        let (origin, t) = self.moved(ray, [S::ZERO; 3], axis, middle);
         // Where the ray crosses the box's middle plane it is at most a box away sideways, if it meets the box at all.
         let near = S::Vec3::from_array(origin).largest() <= self.reach * S::from_u32(NEAR);
         if near { Some((origin, t)) } else { None }
     }
 
-    /// The ray's point at which the nets' coordinate along `axis`, the ray's steepest, is `middle`, and its t: rounded about once.
-    fn moved(&self, ray: &Ray<S>, axis: Axis, middle: S) -> ([S; 3], S) {
-        let (mut origin, mut t) = (self.relative(ray.origin), S::ZERO);
-        // What rounding took of them (Knuth's difference), to be given back where it is not small any more.
-        let mut lost: [S; 3] = core::array::from_fn(|k| {
-            let part = origin[k] - ray.origin[k];
-            (ray.origin[k] - (origin[k] - part)) - (self.origin[k] + part)
-        });
+    /// The ray's point at which the coordinate along `axis`, the ray's steepest, is `middle`, and its t: rounded about once. In the
+    /// nets' coordinates, relative to `own`.
+    fn moved(&self, ray: &Ray<S>, own: [S; 3], axis: Axis, middle: S) -> ([S; 3], S) {
+        let (mut origin, mut t) = (ray.origin, S::ZERO);
+        // What rounding takes of them, to be given back where it is not small any more.
+        let mut lost = [S::ZERO; 3];
+        for k in 0..3 {
+            for from in [self.origin[k], own[k]] {
+                let (difference, rest) = exact_difference(origin[k], from);
+                (origin[k], lost[k]) = (difference, lost[k] + rest);
+            }
+        }
         // Twice: the first step is exact sideways but off along the ray by the rounding of a far t; the second is not.
         for _ in 0..2 {
             let step = (middle - axis.of(&origin)) / axis.of(&ray.direction);
@@ -88,6 +95,13 @@ impl<S: Scalar> Frame<S> {
         }
         (origin, t)
     }
+}
+
+/// a − b, rounded, and what rounding took of it (Knuth's difference).
+fn exact_difference<S: Scalar>(a: S, b: S) -> (S, S) {
+    let difference = a - b;
+    let part = difference - a;
+    (difference, (a - (difference - part)) - (b + part))
 }
 
 /// a · b + c, rounded about once, by Dekker's product and Knuth's sum, without fused arithmetic.

@@ -116,3 +116,68 @@ fn bad_surfaces_are_named_and_an_empty_scene_is_missed() {
         assert_eq!(found, Ok(None));
     });
 }
+
+/// A sheet of side 1 about `own`, before one of side 1000: given relative to that, or not.
+fn with_small<R>(own: [f32; 3], with: impl FnOnce(Result<Scene<'_, Plain<f32>>, SceneError>) -> R) -> R {
+    let sheet = |half: f32| [[-half, -half, 0.0], [-half, half, 0.0], [half, -half, 0.0], [half, half, 0.0]].map(Plain);
+    let (small, large) = (sheet(0.5), sheet(500.0));
+    let nets = [&small, &large].map(|points| Net::new(1, 1, points).unwrap());
+    let (mut points, mut surfaces) = ([Plain::EMPTY; 8], [SurfaceSlot::EMPTY; 2]);
+    let (mut offsets, mut references) = ([0; 1000], [0; 1000]);
+    let memory = SceneMemory {
+        points: &mut points,
+        surfaces: &mut surfaces,
+        offsets: &mut offsets,
+        references: &mut references,
+    };
+    with(Scene::build_apart(&nets, &[own], &SceneOptions::default(), memory))
+}
+
+#[test]
+fn a_surface_with_an_origin_of_its_own_is_met_to_its_own_rounding() {
+    let own = [300.5_f32, -200.25, 130.0];
+    with_small(own, |scene| {
+        let scene = scene.unwrap();
+        for direction in [[0.0, 0.0, -1.0_f32], [0.3, -0.2, -1.0], [-0.7, 0.9, -1.0], [1.0, 0.4, -0.1]] {
+            let from = [0.25, 0.125, 2.0_f32];
+            let ray = scene.ray([0, 1, 2].map(|k| own[k] + from[k]), direction).unwrap();
+            // Where it meets the sheet's plane, in the sheet's coordinates.
+            let t = f64::from(from[2]) / -f64::from(direction[2]);
+            let on = [0, 1, 2].map(|k| f64::from(from[k]) + t * f64::from(direction[k]));
+            if on[..2].iter().any(|c| c.abs() > 0.5) {
+                continue;
+            }
+            let mut met = false;
+            let (work, scale) = (&mut Work::default(), scene.frame().scale());
+            let visited = scene.visit(&ray, &Interval::ahead(), &Limits::default(), work, |surface, planes, _, _| {
+                if surface.number == 0 {
+                    met = true;
+                    let point = planes.point(&on.map(|c| c as f32 * scale));
+                    let off = (point.f.abs() + point.g.abs()) / scale;
+                    assert!(off <= 4.0 * f32::EPSILON, "{direction:?}: {off:e}");
+                    assert!((f64::from(planes.t(point.depth)) - t).abs() <= 2.0 * f64::from(f32::EPSILON) * t);
+                }
+                Ok(f32::INFINITY)
+            });
+            visited.unwrap();
+            assert!(met, "{direction:?}");
+        }
+    });
+}
+
+#[test]
+fn an_origin_far_from_its_net_is_refused() {
+    let expected = SceneError::Surface { surface: 0, error: NetError::Origin };
+    for own in [[f32::NAN, 0.0, 0.0], [0.0, f32::NEG_INFINITY, 0.0]] {
+        with_small(own, |scene| assert_eq!(scene.err(), Some(expected), "{own:?}"));
+    }
+    with_small([1e30, 0.0, 0.0], |scene| assert!(scene.is_ok()));
+    // Points that are not finite beside it, and those of a surface as large as the scene.
+    for (size, own) in [(f32::MAX, f32::MAX), (1.0, 0.5)] {
+        let sheet = [[-size, -size, 0.0], [-size, size, 0.0], [size, -size, 0.0], [size, size, 0.0]].map(Plain);
+        let memory = SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] };
+        let nets = [Net::new(1, 1, &sheet).unwrap()];
+        let built = Scene::build_apart(&nets, &[[own, 0.0, 0.0]], &SceneOptions::default(), memory);
+        assert_eq!(built.err(), Some(expected));
+    }
+}

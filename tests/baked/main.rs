@@ -87,14 +87,14 @@ fn every_slot_is_made_again_from_its_numbers() {
 #[test]
 fn numbers_keep_their_places() {
     let reals = |from: u32| std::array::from_fn(|k| f32::from_u32(from + k as u32));
-    let lengths = [reals(0), reals(3), reals(6), reals(9)];
-    let slot = SurfaceSlot::from_numbers(lengths, [12, 13, 14]);
-    assert_eq!(slot.numbers(), (lengths, [12, 13, 14]));
+    let lengths = [reals(0), reals(3), reals(6), reals(9), reals(12)];
+    let slot = SurfaceSlot::from_numbers(lengths, [15, 16, 17]);
+    assert_eq!(slot.numbers(), (lengths, [15, 16, 17]));
     let bounds = [0, 4, 8].map(|from| std::array::from_fn(|k| f64::from(from + k as u32)));
     let patch = Patch::from_numbers(bounds, 12.0, [0x8001_7fff, 0xfffe_0001]);
     assert_eq!(patch.numbers(), (bounds, 12.0, [0x8001_7fff, 0xfffe_0001]));
     assert_eq!([size_of::<Patch<f32>>(), size_of::<Patch<f64>>()], [13 * 4 + 8, 13 * 8 + 8]);
-    assert_eq!([size_of::<SurfaceSlot<f32>>(), size_of::<SurfaceSlot<f64>>()], [15 * 4, 12 * 8 + 16]);
+    assert_eq!([size_of::<SurfaceSlot<f32>>(), size_of::<SurfaceSlot<f64>>()], [18 * 4, 15 * 8 + 16]);
     assert_eq!([size_of::<GridSlot<f32>>(), size_of::<GridSlot<f64>>()], [17 * 4, 12 * 8 + 24]);
 }
 
@@ -107,7 +107,7 @@ fn empty_slots_are_zeros() {
     let shown = format!("{span:?} {sight:?} {patch:?} {surface:?} {grid:?} {remembered:?} {followed:?}");
     let fields = shown.split(|letter: char| !(letter.is_alphanumeric() || "-.+_".contains(letter)));
     let numbers: Vec<f64> = fields.filter_map(|field| field.parse().ok()).collect();
-    assert!(numbers.len() == 88 && numbers.iter().all(|number| number.to_bits() == 0), "{shown}");
+    assert!(numbers.len() == 91 && numbers.iter().all(|number| number.to_bits() == 0), "{shown}");
 }
 
 #[test]

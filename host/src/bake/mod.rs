@@ -25,7 +25,7 @@ pub enum Slot {
     Plain,
     /// [`Weighted`](patchray::point::Weighted): 4 reals.
     Weighted,
-    /// [`SurfaceSlot`]: 12 reals, 3 words.
+    /// [`SurfaceSlot`]: 15 reals, 3 words.
     Surface,
     /// [`Patch`]: 13 reals, 2 words.
     Patch,

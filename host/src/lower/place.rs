@@ -8,13 +8,71 @@ use patchray::scalar::Scalar;
 use patchray::scene::{Scene, SceneHeader};
 
 use super::Lowered;
-use crate::scene::model::Model;
+use crate::scene::model::{Model, ModelSurface};
+use crate::scene::trace::Precision;
 
-/// The origin to which the model's points lose nothing in this precision.
-pub(super) fn origin_of<S: Scalar>(model: &Model) -> [S; 3] {
-    let positions = model.surfaces.iter().flat_map(|surface| &surface.points);
-    let bounds = positions.fold(Aabb::EMPTY, |bounds, &[x, y, z, _]| bounds.with([x, y, z].map(S::from_f64)));
-    exact_origin(&bounds)
+/// The origins to which the points of a model lose nothing in this precision.
+#[derive(Clone, Debug)]
+pub(super) struct Origins<S> {
+    /// Of the scene.
+    pub(super) scene: [S; 3],
+    /// Of each surface, beside that: 0 where the scene's is near enough.
+    pub(super) own: Vec<[S; 3]>,
+}
+
+/// A surface has an origin of its own if it is smaller than the scene by this factor: by powers of two, in `f32` and in `f64`. Less
+/// lets it be met less exactly, by up to so many times 32 roundings of its own; more makes more surfaces cost what a ray's way to an
+/// origin costs.
+const SMALL: [i32; 2] = [6, 14];
+
+impl<S: Scalar> Origins<S> {
+    /// Of a model; without origins of their own, as views ask for, if `own` is not said.
+    pub(super) fn of(model: &Model, own: bool) -> Self {
+        let box_of = |surface: &ModelSurface, origin: [S; 3]| {
+            let points = surface.points.iter();
+            points.fold(Aabb::EMPTY, |bounds, &[x, y, z, _]| bounds.with(relative([x, y, z], origin)))
+        };
+        let none = [S::ZERO; 3];
+        let bounds = model.surfaces.iter().fold(Aabb::EMPTY, |all, surface| all.union(box_of(surface, none)));
+        let scene = exact_origin(&bounds);
+        let [single, double] = SMALL;
+        let small = bounds.diagonal().times_power_of_two(if size_of::<S>() == 4 { -single } else { -double });
+        let of = |surface: &ModelSurface| {
+            let bounds = box_of(surface, scene);
+            if own && bounds.diagonal() < small { exact_origin(&bounds) } else { none }
+        };
+        Origins { scene, own: model.surfaces.iter().map(of).collect() }
+    }
+
+    /// A position of the file on a surface, relative to the scene's origin and to the surface's own: one after the other, which
+    /// rounds nothing where their sum would.
+    pub(super) fn relative(&self, index: usize, position: [f64; 3]) -> [f64; 3] {
+        let own = self.own.get(index).copied().unwrap_or([S::ZERO; 3]);
+        std::array::from_fn(|k| position[k] - self.scene[k].to_f64() - own[k].to_f64())
+    }
+}
+
+/// The largest |coordinate| by which each surface of a model is met by the methods for any rays: relative to its origin, or the
+/// scene's where it is not much smaller.
+pub fn at_hand(model: &Model, precision: Precision) -> Vec<f64> {
+    match precision {
+        Precision::F32 => at_hand_of::<f32>(model),
+        Precision::F64 => at_hand_of::<f64>(model),
+    }
+}
+
+fn at_hand_of<S: Scalar>(model: &Model) -> Vec<f64> {
+    let origins = [false, true].map(|own| Origins::<S>::of(model, own));
+    let largest = |origins: &Origins<S>| {
+        let of = |(index, surface): (usize, &ModelSurface)| {
+            let positions = surface.points.iter().map(|&[x, y, z, _]| origins.relative(index, [x, y, z]));
+            positions.flatten().fold(0.0, |most, c| f64::max(most, c.abs()))
+        };
+        model.surfaces.iter().enumerate().map(of).collect::<Vec<f64>>()
+    };
+    let [of_scene, own] = [&origins[0], &origins[1]].map(largest);
+    let all = of_scene.into_iter().fold(0.0, f64::max);
+    own.into_iter().map(|own| if own < all / 8.0 { own } else { all }).collect()
 }
 
 /// A position of a file relative to an origin.

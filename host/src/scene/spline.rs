@@ -81,7 +81,7 @@ impl Spline {
     ) -> Result<(Vec<ModelSurface>, SplineSummary), SplineError> {
         let [degree_u, degree_v] = self.degrees;
         let [u, v] = &self.knots;
-        let points: Vec<P> = self.points.iter().map(|&point| P::from_file(point, [0.0; 3])).collect();
+        let points: Vec<P> = self.points.iter().map(|&point| P::from_file(point)).collect();
         let spline = BSpline::new(degree_u, degree_v, u, v, &points)?;
         let both = [Direction::U, Direction::V];
         let nothing = PieceMemory { points: &mut [], pieces: &mut [] };

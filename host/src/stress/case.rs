@@ -19,11 +19,17 @@ pub struct Family {
     pub name: &'static str,
     /// In what way it is hard.
     pub what: &'static str,
-    /// Whether its rays graze on purpose: the share that cannot be judged then has no bound.
-    pub grazing: bool,
+    /// The share of its rays that may be left unjudged, at most.
+    pub unjudged: f64,
     /// Makes the cases.
     pub cases: fn(&mut Draw) -> Vec<Case>,
 }
+
+/// What may be left unjudged of most families.
+pub const FEW: f64 = 0.3;
+
+/// The same of those whose rays come near another answer on purpose, down to the last digits of the precision.
+pub const MANY: f64 = 0.6;
 
 /// A model with rays.
 #[derive(Clone, Debug)]

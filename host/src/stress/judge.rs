@@ -3,6 +3,7 @@
 use super::case::Case;
 use super::truth;
 use crate::judge::{Agreement, Allowance, Truth, allowance};
+use crate::lower::at_hand;
 use crate::scanline::Outcome;
 use crate::scene::rays::RayLine;
 use crate::scene::trace::Precision;
@@ -18,6 +19,9 @@ pub struct Judge<'c> {
     diagonal: f64,
     /// That of each surface.
     sizes: Vec<f64>,
+    /// By how much, as a share of its size, rounding of the coordinates at hand may move a surface: at most sixteen units in the
+    /// last place of numbers up to twice as large.
+    rounding: f64,
 }
 
 impl<'c> Judge<'c> {
@@ -30,8 +34,12 @@ impl<'c> Judge<'c> {
     pub fn by(case: &'c Case, rays: &'c [RayLine], truths: Vec<Truth>, precision: Precision) -> Self {
         let diagonal = case.model.control_box().map_or(0.0, |bounds| bounds.diagonal());
         let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
-        let sizes = case.model.surfaces.iter().map(|surface| truth::size(surface, &case.model)).collect();
-        Judge { case, rays, truths, precision, diagonal, sizes }
+        let surfaces = &case.model.surfaces;
+        let sizes: Vec<f64> = surfaces.iter().map(|surface| truth::size(surface, &case.model)).collect();
+        let coordinates = at_hand(&case.model, precision);
+        let shares = coordinates.iter().zip(&sizes).map(|(largest, size)| largest / size);
+        let rounding = 32.0 * unit(precision) * shares.fold(0.0, f64::max);
+        Judge { case, rays, truths, precision, diagonal, sizes, rounding }
     }
 
     /// What is true of a ray, by its place; `None` if there is no such ray.
@@ -75,20 +83,12 @@ impl<'c> Judge<'c> {
         // A margin may be a share of the size of any surface that is nearly hit. What is clear by far is judged all the same.
         let rounding = self.slack(0.0, ray) / self.sizes.iter().copied().fold(self.diagonal, f64::min);
         let least = truth::least_margin(self.precision) + rounding;
-        !truth.open && truth.margin >= least.min(truth::clear_margin(self.precision))
+        !truth.open && truth.margin >= least.min(truth::clear_margin(self.precision)) + self.rounding
     }
 
     /// Whether it is so far from any other that there is no excuse for giving the ray up.
     pub(super) fn is_clear(&self, truth: &Truth) -> bool {
-        !truth.open && truth.margin >= truth::clear_margin(self.precision)
-    }
-
-    /// The precision's unit of rounding.
-    fn unit(&self) -> f64 {
-        match self.precision {
-            Precision::F64 => f64::EPSILON,
-            Precision::F32 => f64::from(f32::EPSILON),
-        }
+        !truth.open && truth.margin >= truth::clear_margin(self.precision) + self.rounding
     }
 
     /// By how much, as a length, rounding can move a point of a ray: of t to the number type, and of the coordinates there.
@@ -96,7 +96,7 @@ impl<'c> Judge<'c> {
         let [x, y, z] = ray.direction;
         let place = [0, 1, 2].map(|k| (ray.origin[k] + t * ray.direction[k]).abs());
         let largest = place.into_iter().fold(0.0, f64::max);
-        self.unit() * (4.0 * t.abs() * x.hypot(y).hypot(z) + 16.0 * largest)
+        unit(self.precision) * (4.0 * t.abs() * x.hypot(y).hypot(z) + 16.0 * largest)
     }
 
     /// How far a right answer may be off along a ray, as shares of [`Judge::size`].
@@ -104,7 +104,7 @@ impl<'c> Judge<'c> {
         let Allowance { across, most } = allowance(self.precision);
         let slack = truth.closest.map_or(0.0, |t| self.slack(t, ray)) / self.size(truth);
         // Where three roots all but fall together, a third of the digits is all that rounding leaves.
-        Allowance { across: across + slack, most: f64::max(most, self.unit().cbrt()) + slack }
+        Allowance { across: across + slack, most: f64::max(most, unit(self.precision).cbrt()) + slack }
     }
 
     pub(super) fn agreement(&self, outcome: &Outcome, truth: &Truth, ray: &RayLine) -> Agreement {
@@ -131,5 +131,13 @@ impl<'c> Judge<'c> {
             agreement.wrong + agreement.missed + agreement.phantom > 0
         });
         differ.count() as u64
+    }
+}
+
+/// The precision's unit of rounding.
+fn unit(precision: Precision) -> f64 {
+    match precision {
+        Precision::F64 => f64::EPSILON,
+        Precision::F32 => f64::from(f32::EPSILON),
     }
 }

@@ -36,7 +36,7 @@ fn table_bytes(line: &str, precision: &str) -> Option<u64> {
     let padded = |reals: u64, words: u64| (reals * real + words * 4).next_multiple_of(real);
     let bytes = match of.split('<').next()? {
         "Plain" => padded(3, 0),
-        "SurfaceSlot" => padded(12, 3),
+        "SurfaceSlot" => padded(15, 3),
         "Patch" => padded(13, 2),
         "Parallelepiped" => padded(12, 0),
         "GridSlot" => padded(12, 5),

@@ -5,19 +5,19 @@ use glam::DVec3;
 use crate::scene::model::{Model, ModelSurface};
 use crate::scene::shapes::{bumpy, cylinder, parallelogram, single, sphere, torus};
 use crate::scene::teapot;
-use crate::stress::case::{Case, Draw, Family, away, point, ray};
+use crate::stress::case::{Case, Draw, FEW, Family, away, point, ray};
 
 pub(super) const FAMILIES: [Family; 2] = [
     Family {
         name: "seams",
         what: "aimed at edges and corners that neighbours share to the bit: teapot, sphere, torus, cylinder",
-        grazing: false,
+        unjudged: FEW,
         cases: seams,
     },
     Family {
         name: "borders",
         what: "1e-1 to 1e-14 (f32: 1e-5) within and beyond edges and corners that nothing continues",
-        grazing: false,
+        unjudged: FEW,
         cases: borders,
     },
 ];

@@ -8,12 +8,12 @@ use crate::scene::rays::RayLine;
 use crate::scene::revolution::{Arcs, Curve, revolve};
 use crate::scene::shapes::{cylinder, elevate, net, parallelogram, single};
 use crate::scene::trace::Precision;
-use crate::stress::case::{Case, Draw, Family, ray};
+use crate::stress::case::{Case, Draw, FEW, Family, ray};
 
 pub(super) const FAMILIES: [Family; 1] = [Family {
     name: "contact",
     what: "rays in a plane, a disc, or along rulings of cylinders, cones and tangent developables",
-    grazing: false,
+    unjudged: FEW,
     cases: contact,
 }];
 

@@ -7,32 +7,32 @@ use crate::scene::model::{Model, ModelSurface};
 use crate::scene::rays::RayLine;
 use crate::scene::revolution::{Arcs, Curve, revolve};
 use crate::scene::shapes::{bumpy, elevate, net, parallelogram, single, sphere};
-use crate::stress::case::{Case, Draw, Family, onto, point, ray};
+use crate::stress::case::{Case, Draw, FEW, Family, onto, point, ray};
 
 pub(super) const FAMILIES: [Family; 5] = [
     Family {
         name: "collapsed-edges",
         what: "bicubics with an edge drawn together to a point, or all but, seen from near that point",
-        grazing: false,
+        unjudged: FEW,
         cases: collapsed,
     },
     Family {
         name: "poles",
         what: "the poles of a sphere and the apex of a cone, met head on and 1e-1 to 1e-14 (f32: 1e-5) beside",
-        grazing: false,
+        unjudged: FEW,
         cases: poles,
     },
-    Family { name: "cusps", what: "a surface that turns back in a cusp", grazing: false, cases: cusps },
+    Family { name: "cusps", what: "a surface that turns back in a cusp", unjudged: FEW, cases: cusps },
     Family {
         name: "coincident",
         what: "duplicates, the same surface in other degrees, planes in one plane",
-        grazing: false,
+        unjudged: FEW,
         cases: coincident,
     },
     Family {
         name: "no-area",
         what: "surfaces that are a point, a line or a triangle, before one that is not",
-        grazing: false,
+        unjudged: FEW,
         cases: no_area,
     },
 ];

@@ -3,26 +3,26 @@
 use glam::DVec3;
 
 use crate::scene::shapes::{elevate, net, paraboloid, parallelogram, single, sphere};
-use crate::stress::case::{Case, Draw, Family, ray};
+use crate::stress::case::{Case, Draw, Family, MANY, ray};
 
 pub(super) const FAMILIES: [Family; 4] = [
     Family {
         name: "grazing-paraboloid",
         what: "tangents of z = x² + y², moved 1e-1 to 1e-14 (f32: 1e-5) to either side",
-        grazing: true,
+        unjudged: MANY,
         cases: on_paraboloid,
     },
-    Family { name: "grazing-sphere", what: "the same of a rational sphere", grazing: true, cases: on_sphere },
+    Family { name: "grazing-sphere", what: "the same of a rational sphere", unjudged: MANY, cases: on_sphere },
     Family {
         name: "grazing-cubic",
         what: "z = x³ along x: three roots, or one, that all but fall together",
-        grazing: true,
+        unjudged: MANY,
         cases: cubic_contact,
     },
     Family {
         name: "grazing-plane",
         what: "planes seen edge on, in their plane and 1e-1 to 1e-14 (f32: 1e-5) off or tilted",
-        grazing: true,
+        unjudged: MANY,
         cases: edge_on,
     },
 ];

@@ -6,19 +6,19 @@ use crate::scene::model::{Model, ModelSurface};
 use crate::scene::rays::RayLine;
 use crate::scene::shapes::weights::{Sheet, Weights};
 use crate::scene::shapes::{bumpy, net, single};
-use crate::stress::case::{Case, Draw, Family, away, mapped, point, ray};
+use crate::stress::case::{Case, Draw, FEW, Family, MANY, away, mapped, point, ray};
 
 pub(super) const FAMILIES: [Family; 2] = [
     Family {
         name: "slivers",
         what: "slivers with unit and with uneven weights, along scan lines that jump between rays of all kinds",
-        grazing: false,
+        unjudged: MANY,
         cases: slivers,
     },
     Family {
         name: "jumps",
         what: "a tip, a sliver, a cusp, a steep sheet and a hill in one scene, along scan lines that jump between them",
-        grazing: false,
+        unjudged: FEW,
         cases: jumps,
     },
 ];

@@ -6,25 +6,25 @@ use crate::scene::camera::{Camera, View};
 use crate::scene::model::{Model, ModelSurface};
 use crate::scene::shapes::{bumpy, net, single, torus};
 use crate::scene::trace::Precision;
-use crate::stress::case::{Case, Draw, Family, Shot, ray};
+use crate::stress::case::{Case, Draw, FEW, Family, Shot, ray};
 
 pub(super) const FAMILIES: [Family; 3] = [
     Family {
         name: "sheets",
         what: "five sheets 1e-9 (f32: 1e-4) apart, as a picture, the nearest first, last and in between",
-        grazing: false,
+        unjudged: FEW,
         cases: sheets,
     },
     Family {
         name: "fins",
         what: "fins 1e-9 (f32: 1e-4) thick before a hill, as a picture along the scan lines",
-        grazing: false,
+        unjudged: FEW,
         cases: fins,
     },
     Family {
         name: "invalid-rays",
         what: "NaN, infinite and zero rays among good ones along scan lines",
-        grazing: false,
+        unjudged: FEW,
         cases: invalid_rays,
     },
 ];

@@ -7,28 +7,28 @@ use crate::scene::rays::RayLine;
 use crate::scene::shapes::{bumpy, single, sphere, torus};
 use crate::scene::teapot;
 use crate::scene::trace::Precision;
-use crate::stress::case::{Case, Draw, Family, away, mapped};
+use crate::stress::case::{Case, Draw, FEW, Family, away, mapped};
 
 pub(super) const FAMILIES: [Family; 6] = [
-    Family { name: "scales", what: "coordinates from 1e-30 to 1e30", grazing: false, cases: scales },
-    Family { name: "offsets", what: "models 1e1 to 1e9 of their size away from 0", grazing: false, cases: offsets },
+    Family { name: "scales", what: "coordinates from 1e-30 to 1e30", unjudged: FEW, cases: scales },
+    Family { name: "offsets", what: "models 1e1 to 1e9 of their size away from 0", unjudged: FEW, cases: offsets },
     Family {
         name: "origins",
         what: "rays from 1e3 to 1e12 sizes away, from inside, and from the surface",
-        grazing: false,
+        unjudged: FEW,
         cases: origins,
     },
-    Family { name: "lengths", what: "directions of length 1e-20 to 1e20", grazing: false, cases: lengths },
+    Family { name: "lengths", what: "directions of length 1e-20 to 1e20", unjudged: FEW, cases: lengths },
     Family {
         name: "axes",
         what: "directions with zeros, negative zeros, and numbers of no weight beside others",
-        grazing: false,
+        unjudged: FEW,
         cases: axes,
     },
     Family {
         name: "intervals",
         what: "ranges of t that begin or end near roots, or behind the origin",
-        grazing: false,
+        unjudged: FEW,
         cases: intervals,
     },
 ];

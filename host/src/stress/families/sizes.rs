@@ -5,19 +5,19 @@ use glam::DVec3;
 use crate::scene::model::{Model, ModelSurface};
 use crate::scene::shapes::{bumpy, parallelogram, single, sphere};
 use crate::scene::trace::Precision;
-use crate::stress::case::{Case, Draw, Family, mapped, point, ray};
+use crate::stress::case::{Case, Draw, FEW, Family, mapped, point, ray};
 
 pub(super) const FAMILIES: [Family; 2] = [
     Family {
         name: "sizes",
         what: "sizes 1 to 1e9 in one scene, each before the next larger one, met within and beyond their borders",
-        grazing: false,
+        unjudged: FEW,
         cases: sizes,
     },
     Family {
         name: "mates",
         what: "a small surface and a mate 1e3 to 1e9 times as large, or as far away, near 0 or far from it",
-        grazing: false,
+        unjudged: FEW,
         cases: mates,
     },
 ];

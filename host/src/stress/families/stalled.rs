@@ -5,25 +5,25 @@ use glam::DVec3;
 
 use crate::scene::model::{Model, ModelSurface};
 use crate::scene::shapes::{bumpy, net, single};
-use crate::stress::case::{Case, Draw, Family, away, point, ray};
+use crate::stress::case::{Case, Draw, Family, MANY, away, point, ray};
 
 pub(super) const FAMILIES: [Family; 3] = [
     Family {
         name: "tips",
         what: "two to four rows of control points in one point, seen from all sides, 1e-1 to 1e-14 (f32: 1e-5) from it",
-        grazing: false,
+        unjudged: MANY,
         cases: tips,
     },
     Family {
         name: "end-on",
         what: "ruled surfaces seen along their rulings, at cusps and where control points are repeated",
-        grazing: true,
+        unjudged: MANY,
         cases: end_on,
     },
     Family {
         name: "moebius",
         what: "Möbius strips of rational pieces 2 × 1, seen from all sides and near their edge",
-        grazing: false,
+        unjudged: MANY,
         cases: moebius,
     },
 ];

@@ -6,19 +6,19 @@ use crate::scene::model::{Model, ModelSurface};
 use crate::scene::shapes::roots::{folded, grid_of_roots, spread};
 use crate::scene::shapes::{Random, bumpy, parallelogram, single, sphere};
 use crate::scene::trace::Precision;
-use crate::stress::case::{Case, Draw, Family, Shot, mapped, onto, ray};
+use crate::stress::case::{Case, Draw, FEW, Family, Shot, mapped, onto, ray};
 
 pub(super) const FAMILIES: [Family; 5] = [
-    Family { name: "aspect", what: "slivers 1e3 to 1e9 times as long as wide", grazing: false, cases: aspect },
+    Family { name: "aspect", what: "slivers 1e3 to 1e9 times as long as wide", unjudged: FEW, cases: aspect },
     Family {
         name: "uneven",
         what: "control points spaced by ratios up to 1e12, so that speed differs as much",
-        grazing: false,
+        unjudged: FEW,
         cases: uneven,
     },
-    Family { name: "weights", what: "weights that differ by 1e3 to 1e9", grazing: false, cases: weights },
-    Family { name: "degrees", what: "degrees from 1 × 15 and 2 × 12 to 15 × 15", grazing: false, cases: degrees },
-    Family { name: "many-roots", what: "up to 25 roots on a ray", grazing: false, cases: many_roots },
+    Family { name: "weights", what: "weights that differ by 1e3 to 1e9", unjudged: FEW, cases: weights },
+    Family { name: "degrees", what: "degrees from 1 × 15 and 2 × 12 to 15 × 15", unjudged: FEW, cases: degrees },
+    Family { name: "many-roots", what: "up to 25 roots on a ray", unjudged: FEW, cases: many_roots },
 ];
 
 fn aspect(draw: &mut Draw) -> Vec<Case> {

@@ -8,7 +8,7 @@ use crate::scene::rays::RayLine;
 use crate::scene::revolution::{Arcs, Curve, revolve};
 use crate::scene::shapes::parallelogram;
 use crate::scene::trace::Precision;
-use crate::stress::case::{Case, Draw, Family, ray};
+use crate::stress::case::{Case, Draw, FEW, Family, ray};
 use crate::stress::forms::meet_pipe;
 use crate::stress::truth::{clear_margin, size};
 
@@ -16,13 +16,13 @@ pub(super) const FAMILIES: [Family; 2] = [
     Family {
         name: "thin-pipes",
         what: "pipes 1e-1 to 1e-14 (f32: 1e-7) thick and as long as 1, met near their axis, most at 1 to 12 degrees to it",
-        grazing: false,
+        unjudged: FEW,
         cases: pipes,
     },
     Family {
         name: "thin-sheets",
         what: "pipes 0.3 wide, and as flat as those are thin: two sheets, all but in one place",
-        grazing: false,
+        unjudged: FEW,
         cases: sheets,
     },
 ];
