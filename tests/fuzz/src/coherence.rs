@@ -6,7 +6,7 @@ use crate::claims::{in_range, on_the_ray, within_limits, within_worst_case};
 use crate::common::Kind;
 use crate::input::{Case, OfKind, interval, limits, subdivision, with_kind};
 use crate::lane::{Lane, Way};
-use crate::ready::prepare;
+use crate::ready::prepare_apart;
 use crate::scribble::scribble;
 use crate::truth::Truth;
 use patchray::limits::{Acceptance, Limits};
@@ -26,7 +26,7 @@ impl OfKind for Coherence {
     fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
         let Coherence(way) = self;
         let surfaces = case.model.surfaces.len();
-        let Some(prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes), way.takes()) else {
+        let Some(prepared) = prepare_apart::<P>(&case.model, &subdivision(&mut bytes), way.takes()) else {
             return;
         };
         let mut lane = Lane::<P>::new(surfaces);

@@ -6,7 +6,7 @@ use crate::claims::on_the_ray;
 use crate::common::Kind;
 use crate::input::{Case, OfKind, interval, limits, subdivision, with_kind};
 use crate::lane::{Lane, Way};
-use crate::ready::prepare;
+use crate::ready::prepare_apart;
 use crate::truth::Truth;
 use patchray::scalar::Scalar;
 
@@ -31,7 +31,7 @@ impl OfKind for Honest {
         let proving: Vec<_> = Way::ALL.into_iter().filter(|way| way.proves(limits.acceptance)).collect();
         let Honest(choice) = self;
         let way = proving[usize::from(choice) / ALIKE % proving.len()];
-        let Some(prepared) = prepare::<P>(&case.model, &options, way.takes()) else {
+        let Some(prepared) = prepare_apart::<P>(&case.model, &options, way.takes()) else {
             return;
         };
         let [origin, direction] = [line.origin, line.direction].map(|v| v.map(P::Scalar::from_f64));

@@ -5,7 +5,7 @@ use crate::claims::{in_range, on_the_ray, within_limits, within_worst_case};
 use crate::common::Kind;
 use crate::input::{Case, OfKind, any_limits, any_subdivision, interval, with_kind};
 use crate::lane::{Lane, Way};
-use crate::ready::prepare;
+use crate::ready::prepare_apart;
 use crate::scribble::scribble;
 use patchray::scalar::Scalar;
 
@@ -21,7 +21,7 @@ struct Methods(Way);
 impl OfKind for Methods {
     fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
         let Methods(way) = self;
-        let Some(prepared) = prepare::<P>(&case.model, &any_subdivision(&mut bytes), way.takes()) else {
+        let Some(prepared) = prepare_apart::<P>(&case.model, &any_subdivision(&mut bytes), way.takes()) else {
             return;
         };
         let mut lane = Lane::<P>::new(case.model.surfaces.len());

@@ -57,9 +57,11 @@ impl OfKind for Preparation {
         if bytes.rarely(4) {
             scene_options.origin = [0; 3].map(|_| number(&mut bytes));
         }
+        let origins: Vec<_> =
+            nets.iter().map_while(|_| bytes.rarely(4).then(|| [0; 3].map(|_| number(&mut bytes)))).collect();
         let mut room =
             SceneRoom { points: vec![], surfaces: vec![], offsets: vec![], references: vec![], header: None };
-        if !lend(&mut bytes, |sizes| room.build(&nets, &scene_options, sizes)) {
+        if !lend(&mut bytes, |sizes| room.build(&nets, &origins, &scene_options, sizes)) {
             return;
         }
         let scene = room.scene().expect("it was built");

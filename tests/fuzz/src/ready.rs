@@ -3,6 +3,7 @@
 use crate::common::{Kind, Prepared, lower, subdivide_scratch};
 use crate::rooms::InView;
 use patchray::arena::Need;
+use patchray::frame::{Aabb, exact_origin};
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::Point;
@@ -10,7 +11,7 @@ use patchray::scalar::Scalar;
 use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions, SurfaceSlot};
 use patchray::subdivide::{PatchMemory, SubdivideError, Subdivision, TreeMemory, subdivide};
 use patchray::surface::Net;
-use patchray_host::scene::model::Model;
+use patchray_host::scene::model::{Model, ModelSurface};
 
 /// What preparing with some memory came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +57,7 @@ impl<P: Point> SceneRoom<P> {
     pub(crate) fn build(
         &mut self,
         nets: &[Net<'_, P>],
+        origins: &[[P::Scalar; 3]],
         options: &SceneOptions<P::Scalar>,
         [points, surfaces, offsets, references]: [usize; 4],
     ) -> Stage<4> {
@@ -68,7 +70,7 @@ impl<P: Point> SceneRoom<P> {
             offsets: &mut self.offsets,
             references: &mut self.references,
         };
-        match Scene::build(nets, options, memory) {
+        match Scene::build_apart(nets, origins, options, memory) {
             Ok(scene) => {
                 self.header = Some(scene.header());
                 Stage::Done
@@ -188,9 +190,57 @@ pub(crate) fn prepare<P: Kind>(model: &Model, options: &Subdivision<P::Scalar>, 
     prepare_within::<P>(model, options, VOXELS, takes)
 }
 
+/// The same for rays of no view, with small surfaces relative to origins of their own.
+pub(crate) fn prepare_apart<P: Kind>(
+    model: &Model,
+    options: &Subdivision<P::Scalar>,
+    takes: Takes,
+) -> Option<Prepared<P>> {
+    let (model, origins) = apart::<P::Scalar>(model);
+    prepare_with::<P>(&model, &origins, options, VOXELS, takes)
+}
+
 /// The same with a scene and grids of so many voxels at most.
 pub(crate) fn prepare_within<P: Kind>(
     model: &Model,
+    options: &Subdivision<P::Scalar>,
+    voxels: u32,
+    takes: Takes,
+) -> Option<Prepared<P>> {
+    prepare_with::<P>(model, &[], options, voxels, takes)
+}
+
+/// A model whose small surfaces are relative to origins of their own, and these: to the bit what it was.
+fn apart<S: Scalar>(model: &Model) -> (Model, Vec<[S; 3]>) {
+    let box_of = |surface: &ModelSurface| {
+        let points = surface.points.iter();
+        points.fold(Aabb::EMPTY, |bounds, &[x, y, z, _]| bounds.with([x, y, z].map(S::from_f64)))
+    };
+    let largest =
+        |bounds: &Aabb<S>| bounds.low.iter().chain(&bounds.high).fold(0.0, |most, c| f64::max(most, c.to_f64().abs()));
+    let all = model.surfaces.iter().map(|surface| largest(&box_of(surface))).fold(0.0, f64::max);
+    let mut moved = model.clone();
+    let origins = moved.surfaces.iter_mut().map(|surface| {
+        let origin = exact_origin(&box_of(surface));
+        let from = origin.map(S::to_f64);
+        let before = surface.points.clone();
+        for point in &mut surface.points {
+            *point = [point[0] - from[0], point[1] - from[1], point[2] - from[2], point[3]];
+        }
+        // Else it is no eighth of the scene's frame.
+        if largest(&box_of(surface)) < all / 16.0 {
+            return origin;
+        }
+        surface.points = before;
+        [S::ZERO; 3]
+    });
+    let origins = origins.collect();
+    (moved, origins)
+}
+
+fn prepare_with<P: Kind>(
+    model: &Model,
+    origins: &[[P::Scalar; 3]],
     options: &Subdivision<P::Scalar>,
     voxels: u32,
     takes: Takes,
@@ -199,7 +249,7 @@ pub(crate) fn prepare_within<P: Kind>(
     let nets = nets(model, &points);
     let scene_options = SceneOptions { voxels, ..SceneOptions::default() };
     let mut room = SceneRoom { points: vec![], surfaces: vec![], offsets: vec![], references: vec![], header: None };
-    ask_and_fill(|sizes| room.build(&nets, &scene_options, sizes))?;
+    ask_and_fill(|sizes| room.build(&nets, origins, &scene_options, sizes))?;
     let scene = room.scene()?;
     let mut cut = PatchRoom { patches: vec![], first: vec![], nodes: vec![], links: vec![] };
     if takes.patches {
