@@ -118,16 +118,21 @@ pub(crate) fn contract<P: Point>(
                 };
                 next = [held[0].plus(du), held[1].plus(dv)];
             }
-            // A root that rounding has moved out of its region is where it is; one beyond the surface's edge is held there. Of a rational
-            // surface it is held beside the region, within which the weight varies little, while beyond it may fall to nothing.
+            // A root that rounding has moved out of its region is where it is, if by no more than what is allowed for: of neighbours
+            // that meet where the ray is all but tangent, each may find it in the other. One beyond the surface's edge is held there.
+            // Of a rational surface it is held beside the region, within which the weight varies little, while beyond it may fall to
+            // nothing.
+            let slack = local.inverse_bounds(loose.allowed());
+            let may_lie = |at: [P::Parameter; 2]| {
+                region.meet([0, 1].map(|k| [at[k].plus(-slack[k]), at[k].plus(slack[k])])).is_some()
+            };
             let within = if P::RATIONAL { region.around(P::Scalar::HALF) } else { Region::WHOLE };
             let at = within.nearest(next);
-            if local.may_hold(off(next, region.nearest(next)), &loose) && local.may_hold(off(next, at), exact) {
+            if may_lie(next) && local.may_hold(off(next, at), exact) {
                 return Ok(Contraction::Done(Some(Place { at, local })));
             }
             let on_edge = if local.at == held { local.on_edge(next, exact) } else { None };
-            let on_edge = on_edge.filter(|&at| local.may_hold(off(at, region.nearest(at)), &loose));
-            return Ok(Contraction::Done(on_edge.map(|at| Place { at, local })));
+            return Ok(Contraction::Done(on_edge.filter(|&at| may_lie(at)).map(|at| Place { at, local })));
         }
         match smaller {
             Some(smaller) => region = smaller,

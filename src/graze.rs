@@ -102,10 +102,12 @@ pub(crate) fn first_met<P: Point, const N: usize>(
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Option<Met<P::Parameter>>, Limit> {
     let allowed = exact.allowed() + error;
-    // In order of worth: whether it lies before the interval; whether it passes the ray by more than rounding, as where the surface
+    // Of a stretch, in order of worth: whether it lies before the interval; whether it passes the ray by more than rounding, as where the surface
     // leaves the ray slowly all within the tolerance; if it is held by no more than its net's error, its distance; and its depth.
     let mut least = None;
     let mut best = None;
+    // Of one root, the place that is nearest to the ray.
+    let mut nearest_to_ray: Option<Place<P::Parameter>> = None;
     let (mut nearest, mut farthest) = (P::Scalar::INFINITY, P::Scalar::LEAST);
     for place in places {
         let distance = place.local.distance();
@@ -119,8 +121,12 @@ pub(crate) fn first_met<P: Point, const N: usize>(
         if least.is_none_or(|least| rank < least) {
             (least, best) = (Some(rank), Some(place));
         }
+        if !planes.is_before_interval(depth) && nearest_to_ray.is_none_or(|old| distance < old.local.distance()) {
+            nearest_to_ray = Some(place);
+        }
     }
-    let Some(place) = best else { return Ok(None) };
+    let Some(first) = best else { return Ok(None) };
+    let place = nearest_to_ray.unwrap_or(first);
     let stretch = farthest - nearest;
     let mut incidence = Incidence::Crossing;
     if stretch > exact.size * P::Scalar::from_f64(CONTACT) {
@@ -136,6 +142,7 @@ pub(crate) fn first_met<P: Point, const N: usize>(
             incidence = Incidence::Grazing;
         }
     }
+    let place = if incidence == Incidence::Crossing { place } else { first };
     // What is held by no more than its net's error may as well be a ray that all but meets the surface.
     if place.local.distance() > exact.allowed() {
         incidence = incidence.max(Incidence::Grazing);
@@ -163,7 +170,7 @@ pub(crate) fn polished<P: Point>(
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Place<P::Parameter>, Limit> {
     let around = region.around(P::Scalar::from_u32(REACH)).sides;
-    Place::polished(at, around, surface.net.degrees(), whole, exact, basis)
+    Place::polished(at, around, surface.net.degrees(), whole, exact, true, basis)
 }
 
 /// See [`polished`]. Less leaves more of the roots of cubic contact a third of the digits; more may lead to another root, and

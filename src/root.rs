@@ -48,6 +48,7 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Root<A> {
 }
 
 /// Where a search ended: (u, v), and the surface there or nearby.
+#[derive(Clone, Copy)]
 pub(crate) struct Place<A: Parameter> {
     pub(crate) at: [A; 2],
     pub(crate) local: Local<A>,
@@ -88,7 +89,7 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Place<A> {
         let along = planes.depth_derivatives(net, self.at, basis).map_err(|Full| Limit::Scratch)?;
         let grazing = self.local.is_tangent(along, exact);
         let whole_domain = [[A::ZERO, A::ONE]; 2];
-        let Place { at, local } = Place::polished(self.at, whole_domain, net.degrees(), whole, exact, basis)?;
+        let Place { at, local } = Place::polished(self.at, whole_domain, net.degrees(), whole, exact, false, basis)?;
         let mut depth = planes.depth_on(net, at, basis).map_err(|Full| Limit::Scratch)?;
         if !grazing {
             // Where the least step of u or v that can be told there is a way in space, the depth is known better than they can be said.
@@ -117,7 +118,9 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Place<A> {
         Ok(Place { at, local: Local::at(at, degrees, net, basis)? })
     }
 
-    /// Where a few of Newton's steps lead from (u, v) within a rectangle of the domain, as long as each brings the ray nearer.
+    /// Where a few of Newton's steps lead from (u, v) within a rectangle of the domain, as long as each brings the ray nearer, or
+    /// the one after it does if `patient`: where a weight falls, what the first leaves of second order is more than what is left of
+    /// a shallow root's distance. In a large rectangle such a step may lead to another root.
     /// What a tolerance leaves across the ray is, along it, more by the inverse of the angle, or for cubic contact a third of the
     /// digits.
     #[cold]
@@ -128,9 +131,11 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Place<A> {
         degrees: Degrees,
         net: &[F],
         exact: &Exactness<S>,
+        patient: bool,
         basis: &mut BasisView<'_, S>,
     ) -> Result<Self, Limit> {
-        let mut place = Place::look(at, degrees, net, basis)?;
+        let mut best = Place::look(at, degrees, net, basis)?;
+        let (mut place, mut waited) = (best, !patient);
         for _ in 0..POLISHING {
             // On a line that the ray follows, rounding alone would choose where to go.
             if place.local.may_be_singular(exact.reach) && place.local.distance() <= exact.rounding {
@@ -140,13 +145,14 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Place<A> {
                 break;
             };
             let to = |k: usize| place.at[k].plus(step[k]).held(within[k][0], within[k][1]);
-            let next = Place::look([to(0), to(1)], degrees, net, basis)?;
-            if !(next.local.distance() < place.local.distance()) {
+            place = Place::look([to(0), to(1)], degrees, net, basis)?;
+            if place.local.distance() < best.local.distance() {
+                best = place;
+            } else if core::mem::replace(&mut waited, true) {
                 break;
             }
-            place = next;
         }
-        Ok(place)
+        Ok(best)
     }
 }
 

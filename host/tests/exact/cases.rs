@@ -6,7 +6,7 @@ use patchray_host::scanline::{Found, Outcome};
 use patchray_host::scene::model::Model;
 use patchray_host::scene::rays::RayLine;
 use patchray_host::scene::revolution::{Arcs, Curve, revolve};
-use patchray_host::scene::shapes::{Random, net, parallelogram, sphere, torus};
+use patchray_host::scene::shapes::{Random, net, parallelogram, single, sphere, torus};
 use patchray_host::scene::trace::{Method, Precision};
 use patchray_host::stress::case::{Case, Draw, mapped, point, ray};
 use patchray_host::stress::forms::meet_pipe;
@@ -208,5 +208,43 @@ fn nothing_is_told_off_the_ray() {
         }
         println!("{}: {told} told", precision.name());
         assert!(told > 1000, "{told}");
+    }
+}
+
+/// Where the ray is all but tangent, rounding moves a root far along the surface. If it lies where regions are halved, each half
+/// once left it to the other: of z = x³ clips leave a region about the one root, which its middle is.
+#[test]
+fn a_shallow_root_is_not_lost_between_halves() {
+    let (ends, heights) = ([-1.0, -1.0 / 3.0, 1.0 / 3.0, 1.0], [-1.0, 1.0, -1.0, 1.0]);
+    let model = single(net(3, 1, |i, j| [ends[i], 2.0 * j as f64 - 1.0, heights[i]]));
+    for precision in PRECISIONS {
+        let mut draw = Draw { random: Random(63), rays: 0, precision };
+        let least = match precision {
+            Precision::F64 => 5.0,
+            Precision::F32 => 2.0,
+        };
+        let lines = (0..rays(100_000)).map(|_| {
+            let slope = 10_f64.powf(-draw.random.within(1.0, least));
+            let (y, aside) = (draw.random.within(-0.5, 0.5), draw.random.within(-0.2, 0.2));
+            ray(DVec3::new(-2.0, y - 2.0 * aside, 2.0 * slope), DVec3::new(1.0, aside, -slope))
+        });
+        let (model, lines) = rounded(&model, lines.collect(), precision);
+        for method in METHODS {
+            let lost = trace(&model, &lines, method, precision).into_iter().zip(&lines).filter(|(outcome, ray)| {
+                // What rounding leaves across the ray is more along it.
+                let off = least_off(precision) / -ray.direction[2];
+                !matches!(outcome, Outcome::Hit(found) if (found.t - 2.0).abs() <= off)
+            });
+            let lost: Vec<_> = lost.collect();
+            assert!(lost.is_empty(), "{} {}: {} {:?}", method.name(), precision.name(), lost.len(), lost[0]);
+        }
+    }
+}
+
+/// How far the point may be off a ray across it.
+fn least_off(precision: Precision) -> f64 {
+    match precision {
+        Precision::F64 => 1e-14,
+        Precision::F32 => 1e-5,
     }
 }
