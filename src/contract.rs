@@ -122,9 +122,9 @@ pub(crate) fn contract<P: Point>(
             // that meet where the ray is all but tangent, each may find it in the other. One beyond the surface's edge is held there.
             // Of a rational surface it is held beside the region, within which the weight varies little, while beyond it may fall to
             // nothing.
-            let slack = local.inverse_bounds(loose.allowed());
-            let may_lie = |at: [P::Parameter; 2]| {
-                region.meet([0, 1].map(|k| [at[k].plus(-slack[k]), at[k].plus(slack[k])])).is_some()
+            let [slack_u, slack_v] = local.inverse_bounds(loose.allowed());
+            let may_lie = |[u, v]: [P::Parameter; 2]| {
+                region.meet([[u.plus(-slack_u), u.plus(slack_u)], [v.plus(-slack_v), v.plus(slack_v)]]).is_some()
             };
             let within = if P::RATIONAL { region.around(P::Scalar::HALF) } else { Region::WHOLE };
             let at = within.nearest(next);
