@@ -179,7 +179,7 @@ impl<'m, P: Point> Scene<'m, P> {
     ///
     /// A small surface in a large scene is met to the rounding of its own coordinates. With a net that is given relative to a
     /// point near it, such as [`exact_origin`](crate::frame::exact_origin) of its own box, that is the rounding of its size.
-    /// A ray is brought near such a surface by some 250 instructions, and there is no view of them: [`ViewError::Near`].
+    /// A ray is brought near such a surface with care, which costs time, and there is no view of them: [`ViewError::Near`].
     ///
     /// [`ViewError::Near`]: crate::view::ViewError::Near
     pub fn build_apart(

@@ -139,14 +139,15 @@ fn a_surface_with_an_origin_of_its_own_is_met_to_its_own_rounding() {
     with_small(own, |scene| {
         let scene = scene.unwrap();
         for direction in [[0.0, 0.0, -1.0_f32], [0.3, -0.2, -1.0], [-0.7, 0.9, -1.0], [1.0, 0.4, -0.1]] {
-            let from = [0.25, 0.125, 2.0_f32];
-            let ray = scene.ray([0, 1, 2].map(|k| own[k] + from[k]), direction).unwrap();
+            // From above a point of the sheet, to about the origin's rounding.
+            let height = -2.0 * direction[2];
+            let from = [0.25 - 2.0 * direction[0], 0.125 - 2.0 * direction[1], height];
+            let origin: [f32; 3] = core::array::from_fn(|k| own[k] + from[k]);
+            let ray = scene.ray(origin, direction).unwrap();
             // Where it meets the sheet's plane, in the sheet's coordinates.
-            let t = f64::from(from[2]) / -f64::from(direction[2]);
-            let on = [0, 1, 2].map(|k| f64::from(from[k]) + t * f64::from(direction[k]));
-            if on[..2].iter().any(|c| c.abs() > 0.5) {
-                continue;
-            }
+            let from: [f64; 3] = core::array::from_fn(|k| f64::from(origin[k]) - f64::from(own[k]));
+            let t = from[2] / -f64::from(direction[2]);
+            let on: [f64; 3] = core::array::from_fn(|k| from[k] + t * f64::from(direction[k]));
             let mut met = false;
             let (work, scale) = (&mut Work::default(), scene.frame().scale());
             let visited = scene.visit(&ray, &Interval::ahead(), &Limits::default(), work, |surface, planes, _, _| {

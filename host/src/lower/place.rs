@@ -20,26 +20,32 @@ pub(super) struct Origins<S> {
     pub(super) own: Vec<[S; 3]>,
 }
 
-/// A surface has an origin of its own if it is smaller than the scene by this factor: by powers of two, in `f32` and in `f64`. Less
-/// lets it be met less exactly, by up to so many times 32 roundings of its own; more makes more surfaces cost what a ray's way to an
-/// origin costs.
+/// A surface has an origin of its own if its coordinates relative to that are smaller than the scene's by this factor: by powers of
+/// two, in `f32` and in `f64`. Less lets a surface be met less exactly, by up to so many times 32 roundings of its own; more makes
+/// more surfaces cost what a ray's way to an origin costs. The kernel takes none of less than an eighth.
 const SMALL: [i32; 2] = [6, 14];
+
+/// The largest |coordinate| in a box.
+fn reach<S: Scalar>(bounds: &Aabb<S>) -> S {
+    bounds.low.iter().chain(&bounds.high).fold(S::ZERO, |most, c| most.greater(c.abs()))
+}
 
 impl<S: Scalar> Origins<S> {
     /// Of a model; without origins of their own, as views ask for, if `own` is not said.
     pub(super) fn of(model: &Model, own: bool) -> Self {
+        let none = [S::ZERO; 3];
         let box_of = |surface: &ModelSurface, origin: [S; 3]| {
             let points = surface.points.iter();
             points.fold(Aabb::EMPTY, |bounds, &[x, y, z, _]| bounds.with(relative([x, y, z], origin)))
         };
-        let none = [S::ZERO; 3];
-        let bounds = model.surfaces.iter().fold(Aabb::EMPTY, |all, surface| all.union(box_of(surface, none)));
-        let scene = exact_origin(&bounds);
+        let around = |origin| model.surfaces.iter().fold(Aabb::EMPTY, |all, one| all.union(box_of(one, origin)));
+        let scene = exact_origin(&around(none));
         let [single, double] = SMALL;
-        let small = bounds.diagonal().times_power_of_two(if size_of::<S>() == 4 { -single } else { -double });
+        let small = reach(&around(scene)).times_power_of_two(if size_of::<S>() == 4 { -single } else { -double });
         let of = |surface: &ModelSurface| {
             let bounds = box_of(surface, scene);
-            if own && bounds.diagonal() < small { exact_origin(&bounds) } else { none }
+            let origin = exact_origin(&bounds);
+            if own && reach(&bounds.relative(origin)) < small { origin } else { none }
         };
         Origins { scene, own: model.surfaces.iter().map(of).collect() }
     }

@@ -2,7 +2,7 @@ use clap::ValueEnum;
 
 use super::*;
 use crate::memory::Kind;
-use crate::scene::shapes::{bilinear, single, torus};
+use crate::scene::shapes::{bilinear, parallelogram, single, torus};
 use crate::scene::teapot;
 
 #[test]
@@ -76,4 +76,21 @@ fn no_surfaces_make_an_empty_scene() {
     let lowered = lowered.expect("nothing is needed");
     assert!(lowered.scene().is_empty());
     assert!(lowered.patches().all().is_empty());
+}
+
+#[test]
+fn small_surfaces_have_origins_of_their_own_at_any_scale() {
+    let sheet = |low: f64, side: f64| parallelogram([low, low, 0.0], [side, 0.0, 0.0], [0.0, side, 0.0]);
+    for scale in [1e-30, 1.0, 1e30, 1.5e38] {
+        // The largest is as wide as no `f32` tells.
+        let model = Model::numbered([sheet(-scale, 2.0 * scale), sheet(0.5 * scale, 0.25 * scale)].into());
+        let small = Model::numbered([model.surfaces.clone(), vec![sheet(0.5 * scale, 1e-3 * scale)]].concat());
+        for (model, moved) in [(model, vec![]), (small, vec![2])] {
+            let origins = Origins::<f32>::of(&model, true).own;
+            let of = (0..origins.len()).filter(|&k| origins[k] != [0.0; 3]).collect::<Vec<_>>();
+            assert_eq!(of, moved, "{scale:e}");
+            let lowered = Lowered::<Plain<f32>>::build(&model, Stages::NONE, &Preparation::default());
+            assert!(lowered.is_ok(), "{scale:e}: {:?}", lowered.err());
+        }
+    }
 }

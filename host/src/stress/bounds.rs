@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::case::Family;
 use super::run::{Row, Score};
-use crate::scene::trace::Method;
+use crate::scene::trace::{Method, Precision};
 
 /// The seed that bounds are recorded for.
 pub const SEED: u64 = 1;
@@ -107,7 +107,11 @@ pub fn broken(row: &Row, families: &[Family]) -> Vec<String> {
     say(score.gave_up_clear, "clear rays given up");
     say(score.beyond, "rays beyond the stated worst case");
     say(score.not_finite, "answers that are not finite");
-    let most = families.iter().find(|family| family.name == row.family).map_or(0.0, |family| family.unjudged);
+    let most = families.iter().find(|family| family.name == row.family).map_or([0.0; 2], |family| family.unjudged);
+    let most = match row.precision {
+        Precision::F64 => most[0],
+        Precision::F32 => most[1],
+    };
     if score.unjudged_share() > most {
         say((100.0 * score.unjudged_share()) as u64, "% of the rays are not judged");
     }
@@ -117,7 +121,6 @@ pub fn broken(row: &Row, families: &[Family]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::trace::Precision;
 
     fn row(score: Score) -> Row {
         Row { family: "poles".to_owned(), method: Method::Clipping, precision: Precision::F64, score }

@@ -19,17 +19,20 @@ pub struct Family {
     pub name: &'static str,
     /// In what way it is hard.
     pub what: &'static str,
-    /// The share of its rays that may be left unjudged, at most.
-    pub unjudged: f64,
+    /// The share of its rays that may be left unjudged, at most: in `f64` and in `f32`.
+    pub unjudged: [f64; 2],
     /// Makes the cases.
     pub cases: fn(&mut Draw) -> Vec<Case>,
 }
 
 /// What may be left unjudged of most families.
-pub const FEW: f64 = 0.3;
+pub const FEW: [f64; 2] = [0.3, 0.3];
+
+/// The same of those for which `f32` has so few digits that rounding alone changes many answers.
+pub const COARSE: [f64; 2] = [0.3, 0.6];
 
 /// The same of those whose rays come near another answer on purpose, down to the last digits of the precision.
-pub const MANY: f64 = 0.6;
+pub const MANY: [f64; 2] = [0.6, 0.6];
 
 /// A model with rays.
 #[derive(Clone, Debug)]

@@ -44,8 +44,8 @@ pub struct Score {
     pub differ: Option<u64>,
     /// The same under the paper's rule of acceptance.
     pub differ_by_paper: Option<u64>,
-    /// The largest distance between the surface's point at a hit's (u, v) and the ray's at its t, less [`Judge::slack`], as a share
-    /// of the surface's size; of hits where the ray crosses the surface.
+    /// The largest distance between the surface's point at a hit's (u, v) and the ray's at its t, less what rounding of its
+    /// coordinates and of the ray at hand leaves, as a share of the surface's size; of hits where the ray crosses the surface.
     pub residual: f64,
     /// The most Newton steps and clips that a ray took.
     pub steps: u64,

@@ -219,9 +219,10 @@ fn a_shallow_root_is_not_lost_between_halves() {
     let model = single(net(3, 1, |i, j| [ends[i], 2.0 * j as f64 - 1.0, heights[i]]));
     for precision in PRECISIONS {
         let mut draw = Draw { random: Random(63), rays: 0, precision };
-        let least = match precision {
-            Precision::F64 => 5.0,
-            Precision::F32 => 2.0,
+        // What rounding leaves across the ray is more along it.
+        let (least, across) = match precision {
+            Precision::F64 => (5.0, 1e-14),
+            Precision::F32 => (2.0, 1e-5),
         };
         let lines = (0..rays(100_000)).map(|_| {
             let slope = 10_f64.powf(-draw.random.within(1.0, least));
@@ -231,20 +232,11 @@ fn a_shallow_root_is_not_lost_between_halves() {
         let (model, lines) = rounded(&model, lines.collect(), precision);
         for method in METHODS {
             let lost = trace(&model, &lines, method, precision).into_iter().zip(&lines).filter(|(outcome, ray)| {
-                // What rounding leaves across the ray is more along it.
-                let off = least_off(precision) / -ray.direction[2];
+                let off = across / -ray.direction[2];
                 !matches!(outcome, Outcome::Hit(found) if (found.t - 2.0).abs() <= off)
             });
             let lost: Vec<_> = lost.collect();
             assert!(lost.is_empty(), "{} {}: {} {:?}", method.name(), precision.name(), lost.len(), lost[0]);
         }
-    }
-}
-
-/// How far the point may be off a ray across it.
-fn least_off(precision: Precision) -> f64 {
-    match precision {
-        Precision::F64 => 1e-14,
-        Precision::F32 => 1e-5,
     }
 }

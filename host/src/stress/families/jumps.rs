@@ -6,13 +6,13 @@ use crate::scene::model::{Model, ModelSurface};
 use crate::scene::rays::RayLine;
 use crate::scene::shapes::weights::{Sheet, Weights};
 use crate::scene::shapes::{bumpy, net, single};
-use crate::stress::case::{Case, Draw, FEW, Family, MANY, away, mapped, point, ray};
+use crate::stress::case::{COARSE, Case, Draw, FEW, Family, away, mapped, point, ray};
 
 pub(super) const FAMILIES: [Family; 2] = [
     Family {
         name: "slivers",
         what: "slivers with unit and with uneven weights, along scan lines that jump between rays of all kinds",
-        unjudged: MANY,
+        unjudged: COARSE,
         cases: slivers,
     },
     Family {

@@ -5,13 +5,13 @@ use glam::DVec3;
 
 use crate::scene::model::{Model, ModelSurface};
 use crate::scene::shapes::{bumpy, net, single};
-use crate::stress::case::{Case, Draw, Family, MANY, away, point, ray};
+use crate::stress::case::{COARSE, Case, Draw, Family, MANY, away, point, ray};
 
 pub(super) const FAMILIES: [Family; 3] = [
     Family {
         name: "tips",
         what: "two to four rows of control points in one point, seen from all sides, 1e-1 to 1e-14 (f32: 1e-5) from it",
-        unjudged: MANY,
+        unjudged: COARSE,
         cases: tips,
     },
     Family {
@@ -23,7 +23,7 @@ pub(super) const FAMILIES: [Family; 3] = [
     Family {
         name: "moebius",
         what: "Möbius strips of rational pieces 2 × 1, seen from all sides and near their edge",
-        unjudged: MANY,
+        unjudged: COARSE,
         cases: moebius,
     },
 ];

@@ -2,22 +2,22 @@
 
 use crate::scene::shapes::single;
 use crate::scene::shapes::weights::{Sheet, Weights, point_anywhere};
-use crate::stress::case::{Case, Draw, Family, MANY, away};
+use crate::stress::case::{COARSE, Case, Draw, Family, away};
 
 pub(super) const FAMILIES: [Family; 3] = [
     Family {
         name: "weights-falling",
         what: "weights up to 1e9 times as light along an edge or at a corner: flat, twisted, bicubic, 15 × 1 and 1 × 15",
-        unjudged: MANY,
+        unjudged: COARSE,
         cases: falling,
     },
     Family {
         name: "weights-graded",
         what: "the same with weights 1, c, c² and so on along u, v or both, either way",
-        unjudged: MANY,
+        unjudged: COARSE,
         cases: graded,
     },
-    Family { name: "weights-any", what: "the same with weights of any arrangement", unjudged: MANY, cases: any },
+    Family { name: "weights-any", what: "the same with weights of any arrangement", unjudged: COARSE, cases: any },
 ];
 
 /// The most decades that weights differ by.
