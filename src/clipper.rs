@@ -286,8 +286,8 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                 Clip::Settled => Step::Settled,
             };
             if let (Step::Settled, true) = (&step, settled) {
-                // A region as small as the error of its net, or as thin, holds a root, a grazing one, if some place of it passes the ray
-                // by no more than that.
+                // A region as small as the error of its net, or as thin, holds a root, a grazing one, if some place of it
+                // passes the ray by no more than that.
                 step = match nearest(surface, planes, whole, &part.region, exact, part.error, basis)? {
                     Some(met) => Step::Done(Some(met)),
                     None if all_pass(surface, whole, part, exact, basis)? => Step::Done(None),
@@ -351,7 +351,8 @@ fn may_be_single<P: Point>(surface: &Surface<'_, P>, part: &Part<'_, P::Flat>, e
     // Mean chords are derivatives times whole widths.
     let determinant = (fu * gv - gu * fv).abs();
     let [u, v] = halves;
-    // The way that an error makes in u, by the inverse of the Jacobian, is that times a width; and must be less than half of either.
+    // The way that an error makes in u, by the inverse of the Jacobian, is that times a width; and must be less than half of
+    // either.
     let way = along_u * u + along_v * v;
     way <= determinant * P::Scalar::TWO * u.lesser(v)
 }

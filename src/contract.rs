@@ -32,9 +32,9 @@ pub(crate) enum Single<A: Parameter> {
     Unproved,
 }
 
-/// Regions over which the surface may stray farther than this, as a share of its largest coordinate, are clipped on without asking whether they hold
-/// one root at most: few would be proved to, and asking costs a third of a clip. Ten times as much costs 2 % more instructions
-/// on the common teapot.
+/// Regions over which the surface may stray farther than this, as a share of its largest coordinate, are clipped on without
+/// asking whether they hold one root at most: few would be proved to, and asking costs a third of a clip. Ten times as much
+/// costs 2 % more instructions on the common teapot.
 const PROVABLE: f64 = 0.0025;
 
 /// Whether it is worth asking of a region of these widths.
@@ -51,9 +51,9 @@ pub(crate) fn is_provable<P: Point>(
 /// is none.
 ///
 /// Over the region the surface departs from its linear part at the middle by at most σ ([`Surface::strays`]). With J the
-/// Jacobian there, the projection is injective on the region if J⁻¹ turns 2 σ into less than half a width in each
-/// parameter, and a root lies no farther than J⁻¹ turns σ into from where the step leads (R. Krawczyk, "Newton-Algorithmen
-/// zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4, 1969). So each step at least halves the region. `error` is how far
+/// Jacobian there, the projection is injective on the region if J⁻¹ turns 2 σ into less than half a width in each parameter,
+/// and a root lies no farther than J⁻¹ turns σ into from where the step leads (R. Krawczyk, "Newton-Algorithmen zur Bestimmung
+/// von Nullstellen mit Fehlerschranken", Computing 4, 1969). So each step at least halves the region. `error` is how far
 /// rounding may have moved the region's sides, as a distance in space.
 #[inline(always)]
 pub(crate) fn contract<P: Point>(
@@ -118,10 +118,10 @@ pub(crate) fn contract<P: Point>(
                 };
                 next = [held[0].plus(du), held[1].plus(dv)];
             }
-            // A root that rounding has moved out of its region is where it is, if by no more than what is allowed for: of neighbours
-            // that meet where the ray is all but tangent, each may find it in the other. One beyond the surface's edge is held there.
-            // Of a rational surface it is held beside the region, within which the weight varies little, while beyond it may fall to
-            // nothing.
+            // A root that rounding has moved out of its region is where it is, if by no more than what is allowed for: of
+            // neighbours that meet where the ray is all but tangent, each may find it in the other. One beyond the surface's
+            // edge is held there. Of a rational surface it is held beside the region, within which the weight varies little,
+            // while beyond it may fall to nothing.
             let [slack_u, slack_v] = local.inverse_bounds(loose.allowed());
             let may_lie = |[u, v]: [P::Parameter; 2]| {
                 region.meet([[u.plus(-slack_u), u.plus(slack_u)], [v.plus(-slack_v), v.plus(slack_v)]]).is_some()

@@ -102,8 +102,9 @@ pub(crate) fn first_met<P: Point, const N: usize>(
     basis: &mut BasisView<'_, P::Scalar>,
 ) -> Result<Option<Met<P::Parameter>>, Limit> {
     let allowed = exact.allowed() + error;
-    // Of a stretch, in order of worth: whether it lies before the interval; whether it passes the ray by more than rounding, as where the surface
-    // leaves the ray slowly all within the tolerance; if it is held by no more than its net's error, its distance; and its depth.
+    // Of a stretch, in order of worth: whether it lies before the interval; whether it passes the ray by more than rounding, as
+    // where the surface leaves the ray slowly all within the tolerance; if it is held by no more than its net's error, its
+    // distance; and its depth.
     let mut least = None;
     let mut best = None;
     // Of one root, the place that is nearest to the ray.
@@ -132,8 +133,8 @@ pub(crate) fn first_met<P: Point, const N: usize>(
     if stretch > exact.size * P::Scalar::from_f64(CONTACT) {
         incidence = Incidence::Contact;
     } else if stretch > exact.allowed() * P::Scalar::from_u32(BESIDE) {
-        // Roots may be apart that cannot be told apart; or what is allowed across the ray, to both sides of one root, is so much along
-        // it.
+        // Roots may be apart that cannot be told apart; or what is allowed across the ray, to both sides of one root, is so
+        // much along it.
         let [depth_u, depth_v] =
             planes.depth_derivatives(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
         let [by_u, by_v] = place.local.inverse_bounds(allowed + allowed);

@@ -88,8 +88,9 @@ impl<S: Scalar> GridSlot<S> {
         self.counts.iter().fold(0, |sum: u32, &n| sum.saturating_add(n))
     }
 
-    /// Builds a grid over `count` items, whose boxes `boxes` gives, with about `density` voxels per item and at most
-    /// `most` voxels; fewer if their references would be more than [`MAX_REFERENCES`]. Offsets and references go into arenas, which may be too small: then they only count.
+    /// Builds a grid over `count` items, whose boxes `boxes` gives, with about `density` voxels per item and at most `most`
+    /// voxels; fewer if their references would be more than [`MAX_REFERENCES`]. Offsets and references go into arenas, which
+    /// may be too small: then they only count.
     pub fn build(
         count: usize,
         boxes: impl Fn(usize) -> Aabb<S>,

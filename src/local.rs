@@ -44,9 +44,9 @@ impl<S: Scalar> Exactness<S> {
         (self.tolerance / self.size).sqrt() * S::from_u32(GRAZE)
     }
 
-    /// By how much a point of the projected net may be off: some three roundings of numbers below 4 times the coordinates; twice that,
-    /// so that an edge which two surfaces share but for its last bits is lost by neither. The sides of regions round, too, and a
-    /// rational surface may move by its degree in roundings where a parameter moves by two.
+    /// By how much a point of the projected net may be off: some three roundings of numbers below 4 times the coordinates;
+    /// twice that, so that an edge which two surfaces share but for its last bits is lost by neither. The sides of regions
+    /// round, too, and a rational surface may move by its degree in roundings where a parameter moves by two.
     #[inline(always)]
     pub(crate) fn of_net<F: Flat<Scalar = S>>(&self, degrees: Degrees) -> S {
         let both = u32::from(degrees.u) + u32::from(degrees.v);
@@ -142,8 +142,8 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
         (along(self.f_g), [along(self.du), along(self.dv)])
     }
 
-    /// Whether the ray is tangent, from the derivatives of the depth (of a rational surface over the weight); see [`Incidence`](crate::ray::Incidence). A pole has no tangent plane,
-    /// and is not.
+    /// Whether the ray is tangent, from the derivatives of the depth (of a rational surface over the weight); see
+    /// [`Incidence`](crate::ray::Incidence). A pole has no tangent plane, and is not.
     #[inline(always)]
     pub(crate) fn is_tangent(&self, [depth_u, depth_v]: [S; 2], exact: &Exactness<S>) -> bool {
         // The surface's normal in the system of the two planes and depth, in which the ray is (0, 0, 1).
@@ -153,9 +153,9 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
         c < exact.graze() * (a + b + c)
     }
 
-    /// Whether the ray is seen to be no tangent from f and g alone, which is true of most roots: the derivatives of depth are at
-    /// most the degrees times twice the coordinates' reach. (Of a rational surface both its parts, numerator and weight, are bounded
-    /// apart.)
+    /// Whether the ray is seen to be no tangent from f and g alone, which is true of most roots: the derivatives of depth are
+    /// at most the degrees times twice the coordinates' reach. (Of a rational surface both its parts, numerator and weight, are
+    /// bounded apart.)
     #[inline(always)]
     pub(crate) fn is_steep<F: Flat<Scalar = S, Parameter = A>>(&self, degrees: Degrees, exact: &Exactness<S>) -> bool {
         let twice = if F::RATIONAL { 8 } else { 2 };
@@ -265,10 +265,10 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Local<A> {
         [(fv.abs() + gv.abs()) * share, (fu.abs() + gu.abs()) * share]
     }
 
-    /// Of a point on an edge from which a step leads beyond it: the place on the edge that the ray meets, if it passes the edge by no
-    /// more than is allowed. Where u and v lead all but the same way, as the ray sees it, rounding moves a root along the edge, and out
-    /// of it, by far more than the edge is off the ray; so the edge is followed alone. Then of two neighbours not both refuse a ray
-    /// between them.
+    /// Of a point on an edge from which a step leads beyond it: the place on the edge that the ray meets, if it passes the edge
+    /// by no more than is allowed. Where u and v lead all but the same way, as the ray sees it, rounding moves a root along the
+    /// edge, and out of it, by far more than the edge is off the ray; so the edge is followed alone. Then of two neighbours not
+    /// both refuse a ray between them.
     #[cold]
     #[inline(never)]
     pub(crate) fn on_edge(&self, next: [A; 2], exact: &Exactness<S>) -> Option<[A; 2]> {

@@ -24,7 +24,8 @@ pub(crate) struct Part<'a, F: Flat> {
 }
 
 impl<'a, F: Flat> Part<'a, F> {
-    /// The whole surface, its projected net, off by `error` at most, copied into lent room; `None` if it is seen to pass the ray by.
+    /// The whole surface, its projected net, off by `error` at most, copied into lent room; `None` if it is seen to pass the
+    /// ray by.
     #[inline(always)]
     pub(crate) fn whole(
         degrees: Degrees,

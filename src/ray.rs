@@ -167,9 +167,10 @@ pub enum Incidence {
     #[default]
     Crossing = 0,
     /// The ray is tangent to working precision: at an angle to the surface whose sine is below 4 √tolerance. A displacement of
-    /// the ray by the tolerance may then merge this root with another, and t, u and v are known to about half the digits. So is a
-    /// root called that roots beside it cannot be told from, or that lies off the ray by more than the tolerance and rounding, but by
-    /// no more than what rounding may have made of the surface's control points: that is of shallow rays, or of uneven weights.
+    /// the ray by the tolerance may then merge this root with another, and t, u and v are known to about half the digits. So is
+    /// a root called that roots beside it cannot be told from, or that lies off the ray by more than the tolerance and
+    /// rounding, but by no more than what rounding may have made of the surface's control points: that is of shallow rays, or
+    /// of uneven weights.
     Grazing = 1,
     /// The ray lies in the surface for a stretch, to working precision. t is where the stretch begins.
     Contact = 2,

@@ -92,7 +92,8 @@ impl<S: Scalar, A: Parameter<Scalar = S>> Place<A> {
         let Place { at, local } = Place::polished(self.at, whole_domain, net.degrees(), whole, exact, false, basis)?;
         let mut depth = planes.depth_on(net, at, basis).map_err(|Full| Limit::Scratch)?;
         if !grazing {
-            // Where the least step of u or v that can be told there is a way in space, the depth is known better than they can be said.
+            // Where the least step of u or v that can be told there is a way in space, the depth is known better than they can
+            // be said.
             let told = |at: A, step: S| at.plus(step * S::from_f64(0.25)) != at;
             let unsaid =
                 |&[du, dv]: &[S; 2]| !told(at[0], du) && !told(at[1], dv) && !local.may_be_singular(exact.reach);

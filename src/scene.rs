@@ -174,8 +174,8 @@ impl<'m, P: Point> Scene<'m, P> {
         Scene::build_apart(nets, &[], options, memory)
     }
 
-    /// The same from nets each of which is given relative to an origin of its own beside that, by its number; 0 where there is none.
-    /// From that its coordinates must be less than an eighth of the scene's.
+    /// The same from nets each of which is given relative to an origin of its own beside that, by its number; 0 where there is
+    /// none. From that its coordinates must be less than an eighth of the scene's.
     ///
     /// A small surface in a large scene is met to the rounding of its own coordinates. With a net that is given relative to a
     /// point near it, such as [`exact_origin`](crate::frame::exact_origin) of its own box, that is the rounding of its size.

@@ -76,7 +76,8 @@ pub struct InLine<'l, S> {
 }
 
 impl<'l, S: Scalar> InLine<'l, S> {
-    /// See [`Line::closest`](crate::line::Line::closest). Of its own, so that a ray that can meet nothing costs no more than to see that.
+    /// See [`Line::closest`](crate::line::Line::closest). Of its own, so that a ray that can meet nothing costs no more than to
+    /// see that.
     #[inline(never)]
     pub(crate) fn closest<'v, P: Point<Scalar = S>>(
         self,

@@ -1,8 +1,8 @@
 //! What a search tells of itself, step by step, to whoever listens.
 //!
-//! Numbers are what carries it through the kernel: every search computes in some [`Scalar`](crate::scalar::Scalar), and tells its type
-//! what it does. `f32` and `f64` do not listen, so that a program that uses these holds none of it. [`Told`](crate::told::Told) is a
-//! number that computes the same bits and passes on what it is told.
+//! Numbers are what carries it through the kernel: every search computes in some [`Scalar`](crate::scalar::Scalar), and tells
+//! its type what it does. `f32` and `f64` do not listen, so that a program that uses these holds none of it.
+//! [`Told`](crate::told::Told) is a number that computes the same bits and passes on what it is told.
 
 use crate::ray::Incidence;
 

@@ -100,9 +100,9 @@ impl core::fmt::Display for SubdivideError {
 
 impl core::error::Error for SubdivideError {}
 
-/// However small a surface is in its scene, its patches are as near to their parallelograms as this share of its longest side. (What
-/// is small shows few pixels, so that a share of the scene is what most pictures want; but starts and boxes of a patch that is
-/// nowhere near flat are worth nothing.) Smaller makes more patches of small surfaces.
+/// However small a surface is in its scene, its patches are as near to their parallelograms as this share of its longest side.
+/// (What is small shows few pixels, so that a share of the scene is what most pictures want; but starts and boxes of a patch
+/// that is nowhere near flat are worth nothing.) Smaller makes more patches of small surfaces.
 const COARSEST: f64 = 1.0 / 32.0;
 
 /// What is still to be done on the way through a tree.

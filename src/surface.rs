@@ -28,7 +28,8 @@ pub enum NetError {
     NotFinite(usize),
     /// The point of this index has a weight that is not positive.
     Weight(usize),
-    /// The net's own origin, or a point beside it, is not finite; or the points lie an eighth of the scene or more from it, along an axis.
+    /// The net's own origin, or a point beside it, is not finite; or the points lie an eighth of the scene or more from it,
+    /// along an axis.
     Origin,
 }
 

@@ -24,7 +24,8 @@ pub struct Listed<'p, S> {
     pub owner: bool,
 }
 
-/// Sends a testing ray from `root` back to depth `nearest`, and calls `visit` with each patch whose box it meets, once each, from the point toward the origin, as long as `visit` says so.
+/// Sends a testing ray from `root` back to depth `nearest`, and calls `visit` with each patch whose box it meets, once each,
+/// from the point toward the origin, as long as `visit` says so.
 #[inline(always)]
 pub fn testing_ray<S: Scalar, A: Parameter<Scalar = S>>(
     along: &impl Along<S>,

@@ -84,8 +84,8 @@ pub enum ViewError {
     Ray(RayError),
     /// The camera's three vectors lie in a plane, or all but, so that an image has no extent.
     Flat,
-    /// The eye's largest |coordinate| is more than eight units of the frame, eight to sixteen times that of the scene: near to parallel, its rays
-    /// would lose digits. They can be traced one by one.
+    /// The eye's largest |coordinate| is more than eight units of the frame, eight to sixteen times that of the scene: near to
+    /// parallel, its rays would lose digits. They can be traced one by one.
     Far,
     /// Surfaces are much smaller than the scene, and have origins of their own; or they and the eye are near 0, as the scene goes:
     /// turned together with all else they would be met less exactly than rays one by one meet them.

@@ -153,7 +153,8 @@ fn wrong_in_f32(scene: &Scene, method: Method, truths: &[Truth], picture: &View)
 }
 
 /// Of a ray that all but touches a fold `f32` cannot tell whether it meets it. Where the predicted methods clip one patch after
-/// another along the fold, each is a chance to take it for met; they must not be wrong more often for it, but for a few of the rays.
+/// another along the fold, each is a chance to take it for met; they must not be wrong more often for it, but for a few of the
+/// rays.
 #[test]
 fn predicted_methods_are_wrong_no_more_often_than_their_originals_in_f32() {
     for Row { name, .. } in TABLE_1 {

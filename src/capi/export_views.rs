@@ -81,9 +81,9 @@ functions_of_views! {
     /// has turned. Codes of rays are of the camera's three vectors.
     view_build: patchray_view_build_f32,
     without memory {
-        /// Traces a scan line by clipping: of each ray the hit, in codes what patchray_clipping_closest would return, and in works,
-        /// unless it is NULL, what was done; each has as many slots as the line has rays. Returns PATCHRAY_OK, or a negative code, after
-        /// which nothing was written but counts. scratch: CLIP words.
+        /// Traces a scan line by clipping: of each ray the hit, in codes what patchray_clipping_closest would return, and in
+        /// works, unless it is NULL, what was done; each has as many slots as the line has rays. Returns PATCHRAY_OK, or a
+        /// negative code, after which nothing was written but counts. scratch: CLIP words.
         clipping_line: patchray_clipping_line_f32,
         /// The same by the original numerical method. scratch: NEWTON words, as for all newton_..._line.
         newton_line: patchray_newton_line_f32,

@@ -1596,9 +1596,9 @@ int32_t patchray_view_build_f32(const patchray_scene_f32 *scene,
                                 patchray_view_memory_f32 *memory,
                                 patchray_view_f32 *view);
 
-// Traces a scan line by clipping: of each ray the hit, in codes what patchray_clipping_closest would return, and in works,
-// unless it is NULL, what was done; each has as many slots as the line has rays. Returns PATCHRAY_OK, or a negative code, after
-// which nothing was written but counts. scratch: CLIP words.
+// Traces a scan line by clipping: of each ray the hit, in codes what patchray_clipping_closest would return, and in
+// works, unless it is NULL, what was done; each has as many slots as the line has rays. Returns PATCHRAY_OK, or a
+// negative code, after which nothing was written but counts. scratch: CLIP words.
 int32_t patchray_clipping_line_f32(const patchray_view_f32 *view,
                                    const patchray_line_f32 *line,
                                    patchray_line_memory_f32 *line_memory,

@@ -4,8 +4,8 @@ use crate::clip::{Clip, clip};
 
 const DEGREES: Degrees = Degrees { u: 2, v: 2 };
 
-/// f = `line(u, v)`, g = `height` · (u − v)² + `gap`, both in Bernstein form of degree 2 × 2: a fold along u + v = 1, seen as a line
-/// along f, that passes the ray by the gap.
+/// f = `line(u, v)`, g = `height` · (u − v)² + `gap`, both in Bernstein form of degree 2 × 2: a fold along u + v = 1, seen as a
+/// line along f, that passes the ray by the gap.
 fn fold(line: impl Fn(usize, usize) -> f64, height: f64, gap: f64) -> [Tuple<f64, 2>; 9] {
     let square = |k: usize| if k == 2 { 1.0 } else { 0.0 };
     core::array::from_fn(|k| {

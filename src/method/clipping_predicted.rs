@@ -12,7 +12,8 @@
 //! - a search in full clips the domains of the patches that the ray meets, of all surfaces, front to back, and ends where no
 //!   other can be closer.
 //!
-//! Clipping finds all roots in a domain, so the answer is as sure as that of [`clipping`](super::clipping), whatever the memory held.
+//! Clipping finds all roots in a domain, so the answer is as sure as that of [`clipping`](super::clipping), whatever the memory
+//! held.
 //!
 //! Source: the paper's section "An Improvement of Bézier Clipping".
 

@@ -105,8 +105,8 @@ pub(crate) fn ask<P: Kind>(
     Answers { all, hits, closest, work }
 }
 
-/// Whether a hit is one of a list, in which a root stands for those that it cannot be told from and that were found before it: where
-/// the ray all but grazes half the digits are known, and where it lies in the surface they are anywhere from where that
+/// Whether a hit is one of a list, in which a root stands for those that it cannot be told from and that were found before it:
+/// where the ray all but grazes half the digits are known, and where it lies in the surface they are anywhere from where that
 /// begins.
 fn is_one_of<P: Kind>(hit: &Hit<P::Scalar>, hits: &[Hit<P::Scalar>], built: &Built<P>, query: &Query) -> bool {
     let scene = built.scene();

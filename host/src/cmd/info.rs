@@ -5,11 +5,11 @@
 //! the Bézier surfaces that it was cut into; `b_splines`, a list of them with `file` and the fields of [`SplineSummary`];
 //! `polygons`, the number of a scene's; `control_box` (`min`, `max`; `null` without surfaces), `diagonal`, `flatness` and
 //! `grid_density` (the ones in effect), and `memory`: for each precision `patches` and `preparation_scratch_bytes` (while the
-//! scene is built), and under `methods` for each method `baked_bytes` (of the tables that `patchray bake` writes), `arena_bytes` (lent for the scene), `arena_bytes_by_kind`,
-//! `coherence_bytes_per_thread`, `scratch_bytes_per_thread`, all for rays of any kind and not there for a method that needs
-//! those of a view; and `view`, with the same fields and `line_bytes_per_thread_at_most`, for the rays of one view: of a
-//! picture, `--stats` says how many bytes its scan lines take. A precision that cannot hold the model has `refused`, the
-//! reason, instead. All bytes are sizes of slots times their number.
+//! scene is built), and under `methods` for each method `baked_bytes` (of the tables that `patchray bake` writes),
+//! `arena_bytes` (lent for the scene), `arena_bytes_by_kind`, `coherence_bytes_per_thread`, `scratch_bytes_per_thread`, all for
+//! rays of any kind and not there for a method that needs those of a view; and `view`, with the same fields and
+//! `line_bytes_per_thread_at_most`, for the rays of one view: of a picture, `--stats` says how many bytes its scan lines take.
+//! A precision that cannot hold the model has `refused`, the reason, instead. All bytes are sizes of slots times their number.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

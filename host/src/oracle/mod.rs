@@ -1,10 +1,10 @@
 //! The slow truth: all roots of a ray on all surfaces of a model, and how safe the answer is.
 //!
-//! The oracle shares nothing with the methods that it judges: it reads the file's control points, and has its own
-//! evaluation, halving and proofs, in f64 or in double-double. Per ray and surface it projects the control points on two planes that contain
-//! the ray and halves the parameter domain until each part is proved to hold no root (`exclusion`), is proved to hold at
-//! most one (`injectivity`), which is then found or disproved (`contraction`), or varies by no more than rounding.
-//! A double root cannot be certified in floating point: such a part is counted as unresolved, never dropped.
+//! The oracle shares nothing with the methods that it judges: it reads the file's control points, and has its own evaluation,
+//! halving and proofs, in f64 or in double-double. Per ray and surface it projects the control points on two planes that
+//! contain the ray and halves the parameter domain until each part is proved to hold no root (`exclusion`), is proved to hold
+//! at most one (`injectivity`), which is then found or disproved (`contraction`), or varies by no more than rounding. A double
+//! root cannot be certified in floating point: such a part is counted as unresolved, never dropped.
 
 mod contraction;
 mod edges;
@@ -37,9 +37,10 @@ pub struct Root {
     pub v: f64,
     /// The surface's number in the model, from 0. Where several surfaces meet, one of them.
     pub surface: usize,
-    /// How far, to first order, the ray may move sideways before this root ends, as a share of `unit`, at most 1: an estimate, the least of the distance to the silhouette, c² / 2κ (c the cosine between ray and normal, κ the normal
-    /// curvature along the tangent nearest to the ray), and the distances, as the ray sees them, to those edges of its
-    /// surface where no other surface carries on. 0 where there is no normal.
+    /// How far, to first order, the ray may move sideways before this root ends, as a share of `unit`, at most 1: an estimate,
+    /// the least of the distance to the silhouette, c² / 2κ (c the cosine between ray and normal, κ the normal curvature along
+    /// the tangent nearest to the ray), and the distances, as the ray sees them, to those edges of its surface where no other
+    /// surface carries on. 0 where there is no normal.
     pub margin: f64,
     /// How far the root may be off along the ray by rounding, as a share of `unit`.
     pub blur: f64,

@@ -9,8 +9,9 @@ use super::net::{Axis, Degrees, Point, halve};
 use super::real::Real;
 use super::root::{Found, nearest_point};
 
-/// Domains examined per ray and surface, unless told otherwise. The teapot takes at most 111, a degree 15 surface met 15 times 179, a pole met
-/// head on or a tangent within 1e-15 up to 2,000; more only lengthens the work for rays that lie along a surface.
+/// Domains examined per ray and surface, unless told otherwise. The teapot takes at most 111, a degree 15 surface met 15 times
+/// 179, a pole met head on or a tangent within 1e-15 up to 2,000; more only lengthens the work for rays that lie along a
+/// surface.
 pub(super) const MAX_DOMAINS: usize = 20_000;
 
 /// Least extent of a domain in u or v, 2⁻⁵⁰ in f64: below it the parameters have no digits left.

@@ -1,9 +1,9 @@
 //! The answers to a batch of rays, as CSV.
 //!
-//! The header is `ray,hit,t,u,v,patch,nx,ny,nz,status`; then a line per ray, in order. `ray` is its number from 0, `hit` is
-//! 1 for the statuses `ok`, `graze` and `contact` and 0 for `miss`, `gave-up:LIMIT` and `invalid`. Numbers are the shortest text that
-//! reads back to the same bits in the precision they were computed in. Without a hit they are empty, except that a ray that
-//! was given up has the best so far, which is not an answer.
+//! The header is `ray,hit,t,u,v,patch,nx,ny,nz,status`; then a line per ray, in order. `ray` is its number from 0, `hit` is 1
+//! for the statuses `ok`, `graze` and `contact` and 0 for `miss`, `gave-up:LIMIT` and `invalid`. Numbers are the shortest text
+//! that reads back to the same bits in the precision they were computed in. Without a hit they are empty, except that a ray
+//! that was given up has the best so far, which is not an answer.
 //!
 //! Where all hits were asked for, a ray has a line per hit, in order of t, and one line if it has none. The lines of a ray
 //! that was given up have the hits found by then, with `hit` 0 and the status `gave-up:LIMIT`: there may be others. If the

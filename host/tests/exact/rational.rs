@@ -37,7 +37,8 @@ fn steep(precision: Precision) -> f64 {
     }
 }
 
-/// What rounding a net's sums leaves of a point in `f32`, as a length: of a degree of 15 it is more than judges elsewhere allow for.
+/// What rounding a net's sums leaves of a point in `f32`, as a length: of a degree of 15 it is more than judges elsewhere allow
+/// for.
 fn blur(surface: &ModelSurface, precision: Precision) -> f64 {
     let sums = 16 + surface.degree_u + surface.degree_v;
     let rounding = if precision == Precision::F32 { 2.0 * f64::from(f32::EPSILON) } else { 0.0 };
@@ -203,9 +204,9 @@ struct Count {
     short: usize,
 }
 
-/// What does not hold yet. In `f32` weights may make a curve of much of a surface, to rounding, and which of its points the ray meets is
-/// not told: then t is less exact than of even weights, but never without being called a graze. And of steep weights so many patches
-/// are made that the spans of a view's scan line run out.
+/// What does not hold yet. In `f32` weights may make a curve of much of a surface, to rounding, and which of its points the ray
+/// meets is not told: then t is less exact than of even weights, but never without being called a graze. And of steep weights
+/// so many patches are made that the spans of a view's scan line run out.
 fn is_short(precision: Precision, outcome: &Outcome) -> bool {
     match outcome {
         Outcome::Hit(found) => precision == Precision::F32 && found.incidence != Incidence::Crossing,
@@ -285,8 +286,8 @@ fn no_ray_is_lost_on_a_rational_surface() {
 /// The least sine of the angle between a ray and a plane at which nothing that `f64` holds lets the ray pass for a tangent.
 const CROSSING: f64 = 1e-3;
 
-/// A plane is a plane whatever the weights of its points, which bend only what u and v are there. (In `f32`, where they make a curve
-/// of much of its domain to rounding, nothing tells the one from the other.)
+/// A plane is a plane whatever the weights of its points, which bend only what u and v are there. (In `f32`, where they make a
+/// curve of much of its domain to rounding, nothing tells the one from the other.)
 #[test]
 fn a_ray_that_crosses_a_plane_is_no_tangent_of_it() {
     let precision = Precision::F64;

@@ -60,8 +60,8 @@ pub(crate) struct Exactness {
 /// over columns.
 const ROUNDINGS: [f64; 2] = [16.0, 8.0];
 
-/// By how much more any hit may be off, however hard its surface: the clipping methods work on projected nets, whose error is that of
-/// all control points. (Of rays that are clear, [`crate::truth`] asks more.)
+/// By how much more any hit may be off, however hard its surface: the clipping methods work on projected nets, whose error is
+/// that of all control points. (Of rays that are clear, [`crate::truth`] asks more.)
 const OF_NETS: f64 = 8.0;
 
 impl Exactness {

@@ -1,5 +1,5 @@
-//! One surface of low degree, or one with a mate, and one ray, by one of the methods that prove what they answer. The oracle is asked
-//! of every ray, whatever the answer.
+//! One surface of low degree, or one with a mate, and one ray, by one of the methods that prove what they answer. The oracle is
+//! asked of every ray, whatever the answer.
 
 use crate::bytes::Bytes;
 use crate::claims::on_the_ray;

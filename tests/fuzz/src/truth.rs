@@ -122,8 +122,8 @@ impl<'c> Truth<'c> {
         off.is_nan() || off > allowed
     }
 
-    /// Whether the ray is as clear of each surface, seen alone, as default budgets have to suffice for: all along its line, which is
-    /// searched whatever the interval.
+    /// Whether the ray is as clear of each surface, seen alone, as default budgets have to suffice for: all along its line,
+    /// which is searched whatever the interval.
     fn is_clear(&self) -> bool {
         let Shares { clear, .. } = Shares::of(self.case.precision);
         let line = RayLine { t_min: f64::NEG_INFINITY, t_max: f64::INFINITY, ..self.ray };
