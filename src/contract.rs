@@ -120,8 +120,8 @@ pub(crate) fn contract<P: Point>(
             }
             // A root that rounding has moved out of its region is where it is, if by no more than what is allowed for: of
             // neighbours that meet where the ray is all but tangent, each may find it in the other. One beyond the surface's
-            // edge is held there. Of a rational surface it is held beside the region, within which the weight varies little,
-            // while beyond it may fall to nothing.
+            // edge is held there. Of a rational surface it is held beside the region, beyond which the weight may fall to
+            // nothing.
             let [slack_u, slack_v] = local.inverse_bounds(loose.allowed());
             let may_lie = |[u, v]: [P::Parameter; 2]| {
                 region.meet([[u.plus(-slack_u), u.plus(slack_u)], [v.plus(-slack_v), v.plus(slack_v)]]).is_some()
@@ -129,7 +129,14 @@ pub(crate) fn contract<P: Point>(
             let within = if P::RATIONAL { region.around(P::Scalar::HALF) } else { Region::WHOLE };
             let at = within.nearest(next);
             if may_lie(next) && local.may_hold(off(next, at), exact) {
-                return Ok(Contraction::Done(Some(Place { at, local })));
+                if !P::RATIONAL {
+                    return Ok(Contraction::Done(Some(Place { at, local })));
+                }
+                // What is bounded is the numerator: where the weight falls, all of it may be small, and the point far from the
+                // ray. So the place is looked at.
+                let place = Place::look(at, surface.net.degrees(), whole, basis)?;
+                let on_the_ray = place.local.distance() <= loose.allowed();
+                return Ok(if on_the_ray { Contraction::Done(Some(place)) } else { Contraction::Open });
             }
             let on_edge = if local.at == held { local.on_edge(next, exact) } else { None };
             return Ok(Contraction::Done(on_edge.filter(|&at| may_lie(at)).map(|at| Place { at, local })));

@@ -129,18 +129,17 @@ pub(crate) fn first_met<P: Point, const N: usize>(
     let Some(first) = best else { return Ok(None) };
     let place = nearest_to_ray.unwrap_or(first);
     let stretch = farthest - nearest;
+    let in_contact = stretch > exact.size * P::Scalar::from_f64(CONTACT);
     let mut incidence = Incidence::Crossing;
-    if stretch > exact.size * P::Scalar::from_f64(CONTACT) {
-        incidence = Incidence::Contact;
-    } else if stretch > exact.allowed() * P::Scalar::from_u32(BESIDE) {
-        // Roots may be apart that cannot be told apart; or what is allowed across the ray, to both sides of one root, is so
-        // much along it.
+    if in_contact || stretch > exact.allowed() * P::Scalar::from_u32(BESIDE) {
+        // Roots may be apart that cannot be told apart, or the ray may follow the surface; or what is allowed across the ray, to
+        // both sides of one root, is so much along it.
         let [depth_u, depth_v] =
             planes.depth_derivatives(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
         let [by_u, by_v] = place.local.inverse_bounds(allowed + allowed);
         let explained = depth_u.abs() * by_u + depth_v.abs() * by_v;
         if place.local.may_be_singular(exact.reach) || !(stretch <= explained) {
-            incidence = Incidence::Grazing;
+            incidence = if in_contact { Incidence::Contact } else { Incidence::Grazing };
         }
     }
     let place = if incidence == Incidence::Crossing { place } else { first };

@@ -220,8 +220,13 @@ impl<'m, P: Point> Scene<'m, P> {
         };
         for (k, (net, origin)) in nets().enumerate() {
             let first = u32::try_from(points.len()).map_err(|_| SceneError::TooLarge)?;
-            if origin != [P::Scalar::ZERO; 3] && !is_near(&frame, control_box(&net, [P::Scalar::ZERO; 3])) {
-                return Err(SceneError::Surface { surface: k as u32, error: NetError::Origin });
+            let refused = |error| SceneError::Surface { surface: k as u32, error };
+            let own = control_box(&net, [P::Scalar::ZERO; 3]);
+            if origin != [P::Scalar::ZERO; 3] && !is_near(&frame, own) {
+                return Err(refused(NetError::Origin));
+            }
+            if is_lost(&frame, own) {
+                return Err(refused(NetError::Small));
             }
             // Weights matter up to a common factor: the largest is brought near 1, exactly.
             let heaviest = net.points().iter().fold(P::Scalar::ZERO, |w, p| w.greater(p.weight()));
@@ -453,6 +458,12 @@ impl<'m, P: Point> Scene<'m, P> {
 fn is_near<S: Scalar>(frame: &Frame<S>, bounds: Aabb<S>) -> bool {
     let largest = |corner: [S; 3]| S::Vec3::from_array(frame.from_nets(corner)).largest();
     largest(bounds.low).greater(largest(bounds.high)) < S::from_f32(APART)
+}
+
+/// Whether all sides of a net's box, in the nets' coordinates, would lose digits in the frame, and are not 0.
+fn is_lost<S: Scalar>(frame: &Frame<S>, bounds: Aabb<S>) -> bool {
+    let longest = S::Vec3::from_array(bounds.sides()).largest();
+    longest > S::ZERO && longest.times_power_of_two(frame.exponent()) < S::MIN_POSITIVE / S::EPSILON
 }
 
 /// The box of a net's control points, in the nets' coordinates; `origin` is the net's own.

@@ -31,6 +31,9 @@ pub enum NetError {
     /// The net's own origin, or a point beside it, is not finite; or the points lie an eighth of the scene or more from it,
     /// along an axis.
     Origin,
+    /// The net is so much smaller than its scene that its sides would lose digits to the least number of the type: by 2¹⁰³ in
+    /// `f32`, by 2⁹⁷⁰ in `f64`. (One whose points are all the same has no sides to lose.)
+    Small,
 }
 
 impl core::fmt::Display for NetError {
@@ -42,6 +45,7 @@ impl core::fmt::Display for NetError {
             NetError::NotFinite(k) => write!(f, "control point {k} is not finite"),
             NetError::Weight(k) => write!(f, "the weight of control point {k} is not positive"),
             NetError::Origin => f.write_str("the control points are not near the net's own origin"),
+            NetError::Small => f.write_str("it is too small beside the rest of the scene for this precision"),
         }
     }
 }

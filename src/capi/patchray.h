@@ -186,6 +186,10 @@
 // A camera is farther away than eight times the scene's size: trace its rays one by one.
 #define PATCHRAY_CAMERA_FAR -17
 
+// A surface is so much smaller than its scene that the number type cannot hold both: by 2^103 in single precision, by 2^970 in
+// double.
+#define PATCHRAY_SMALL -18
+
 // A coordinate of the ray is NaN.
 #define PATCHRAY_RAY_NAN -21
 

@@ -5,11 +5,12 @@ extern crate std;
 use super::*;
 use crate::bernstein::Basis;
 use crate::frame::{Aabb, Frame};
-use crate::parameter::Number;
+use crate::parameter::{BothEnds, Number};
 use crate::point::{Plain, Weighted};
 use crate::ray::{Incidence, Interval};
 use crate::surface::{Net, Shape};
 use heapless::Vec as Fixed;
+use patchray_host::scene::shapes::Random;
 use std::vec::Vec;
 
 type Found<A> = Result<(Vec<Root<A>>, Work), Limit>;
@@ -38,9 +39,8 @@ fn all<P: Point>(
     while let Some(root) = search.next(&mut work)? {
         // Not to be told from one that was found before, but nearer: it stands for that one.
         if let Some(depth) = search.replaced() {
-            let found = roots.len();
-            roots.retain(|old: &Root<_>| old.depth != depth);
-            assert_eq!(roots.len() + 1, found);
+            let old = roots.iter().position(|old: &Root<_>| old.depth == depth);
+            roots.remove(old.expect("it was found"));
         }
         roots.push(root);
     }
@@ -271,4 +271,73 @@ fn budgets_are_kept_and_named() {
     assert_eq!(run(Limits { bisections: work.bisections - 1, ..base }), Err(Limit::Bisections));
     assert_eq!(run(Limits { pending_domains: 1, ..base }), Err(Limit::PendingDomains));
     assert_eq!(run(Limits { newton_steps: 2, ..base }), Err(Limit::NewtonSteps));
+}
+
+/// Where a weight falls to nothing all of the numerators are small, and so says nothing of how far a point is from the ray: of
+/// a flat square with one light corner each root is on the ray by its own weight.
+#[test]
+fn a_root_beside_a_light_corner_is_on_the_ray() {
+    let mut random = Random(81);
+    let below = |random: &mut Random, count: u64| (random.bits() % count) as usize;
+    let mut off = Vec::new();
+    for _ in 0..100_000 {
+        let light = below(&mut random, 4);
+        let weight = random.within(-32.0, -8.0).exp2();
+        let slope = random.within(-1.0, 1.0);
+        // The square (x, y) over [−1/4, 1/4]², in a plane that rises along x.
+        let corner = |k: usize| {
+            let [x, y] = [k / 2, k % 2].map(|c| 0.5 * c as f32 - 0.25);
+            Weighted::new([x, y, slope as f32 * x], if k == light { weight as f32 } else { 1.0 })
+        };
+        let points = [0, 1, 2, 3].map(corner);
+        // To a place near an edge that leads to the corner opposite, or beside it.
+        let mut to = [0, 1].map(|_| 0.5 * below(&mut random, 2) as f64 - 0.25);
+        let edge = below(&mut random, 2);
+        to[edge] += random.within(-1.0, 1.0) * random.within(-20.0, -2.0).exp2();
+        to[1 - edge] += random.within(-1.0, 1.0) * random.within(-20.0, -10.0).exp2();
+        let direction = [0, 1, 2].map(|_| random.within(-1.0, 1.0) as f32);
+        let target = [to[0], to[1], slope * to[0]];
+        let from = [0, 1, 2].map(|k| target[k] as f32 - 2.0 * direction[k]);
+        let Ok((roots, _)) = all([1, 1], &points, [from, direction], &Limits::default(), Order::Any) else { continue };
+        for root in roots {
+            // By its distances from both ends.
+            let [u, v] = [root.u, root.v].map(|t| [BothEnds::ONE.minus(t), t.minus(BothEnds::ZERO)].map(f64::from));
+            let mut sum = [0.0; 4];
+            for (k, point) in points.iter().enumerate() {
+                let share = u[k / 2] * v[k % 2];
+                (0..4).for_each(|c| sum[c] += share * f64::from(point.numbers()[c]));
+            }
+            let way = [0, 1, 2].map(|c| sum[c] / sum[3] - f64::from(from[c]));
+            let [d, square] = [way, direction.map(f64::from)]
+                .map(|of| of.iter().zip(direction).map(|(a, b)| a * f64::from(b)).sum::<f64>());
+            let across = [0, 1, 2].map(|c| way[c] - d / square * f64::from(direction[c]));
+            let distance = across.iter().map(|c| c * c).sum::<f64>().sqrt();
+            if !(distance <= 1e-4) {
+                off.push((distance, root, points, from, direction));
+            }
+        }
+    }
+    assert!(off.is_empty(), "{} off, the first: {:?}", off.len(), off[0]);
+}
+
+/// However much of a flat surface is within rounding of a ray that crosses it at a small angle, the ray crosses it, and does not
+/// lie in it.
+#[test]
+fn a_shallow_crossing_is_no_contact() {
+    let mut random = Random(82);
+    let mut wrong = Vec::new();
+    for _ in 0..20_000 {
+        let weight = random.within(-30.0, 0.0).exp2() as f32;
+        let points = [[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]];
+        let points = points.map(|[x, y]: [f32; 2]| Weighted::new([x, y, 0.0], if x < 0.0 { 1.0 } else { weight }));
+        let [turn, slope] = [random.within(0.0, 6.3), random.within(-11.0, -7.0).exp2()];
+        let [x, y] = [0, 1].map(|_| random.within(-0.2, 0.2));
+        let direction = [turn.cos() as f32, turn.sin() as f32, -slope as f32];
+        let from = [x as f32 - direction[0], y as f32 - direction[1], slope as f32];
+        let Ok((roots, _)) = all([1, 1], &points, [from, direction], &Limits::default(), Order::Any) else { continue };
+        if roots.len() != 1 || roots[0].incidence == Incidence::Contact {
+            wrong.push((roots, weight, from, direction));
+        }
+    }
+    assert!(wrong.is_empty(), "{} wrong, the first: {:?}", wrong.len(), wrong[0]);
 }

@@ -167,6 +167,24 @@ fn a_surface_with_an_origin_of_its_own_is_met_to_its_own_rounding() {
 }
 
 #[test]
+fn a_surface_that_would_vanish_beside_another_is_refused() {
+    let sheet = |half: f32| [[-half, -half, 0.0], [-half, half, 0.0], [half, -half, 0.0], [half, half, 0.0]].map(Plain);
+    let build = |small: [Plain<f32>; 4], large: [Plain<f32>; 4]| {
+        let nets = [&small, &large].map(|points| Net::new(1, 1, points).unwrap());
+        let memory = SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] };
+        Scene::build(&nets, &SceneOptions::default(), memory).err()
+    };
+    let expected = Some(SceneError::Surface { surface: 0, error: NetError::Small });
+    for (half, large) in [(1e-30, 1e17), (1e-38, 1e-3), (1e-2, 3e38)] {
+        assert_eq!(build(sheet(half), sheet(large)), expected, "{half:e} {large:e}");
+    }
+    // As small as the number type holds in full; and one that is a point, or alone.
+    for (half, large) in [(1e-30, 1e-2), (1.0, 1e30), (0.0, 1e30), (1e-44, 1e-44)] {
+        assert!(matches!(build(sheet(half), sheet(large)), Some(SceneError::Memory(_))), "{half:e} {large:e}");
+    }
+}
+
+#[test]
 fn an_origin_far_from_its_net_is_refused() {
     let expected = SceneError::Surface { surface: 0, error: NetError::Origin };
     for own in [[f32::NAN, 0.0, 0.0], [0.0, f32::NEG_INFINITY, 0.0]] {

@@ -72,7 +72,7 @@ pub(crate) fn name(code: i32) -> &'static str {
 #[test]
 fn codes_have_names_of_their_own() {
     let names: Vec<_> = (-60..=1).filter_map(|code| Some(name(code)).filter(|name| *name != "unknown")).collect();
-    assert_eq!(names.len(), 36);
+    assert_eq!(names.len(), 37);
     let unique: std::collections::BTreeSet<_> = names.iter().collect();
     assert_eq!(unique.len(), names.len());
     assert_eq!((name(PATCHRAY_OVERLAP), name(i32::MIN), name(2)), ("PATCHRAY_OVERLAP", "unknown", "unknown"));
@@ -349,6 +349,9 @@ fn wrong_nets_are_refused_with_their_number() {
             numbers[5] = P::Scalar::from_f64(bad);
             spoilt(PATCHRAY_POINT_NOT_FINITE, &|net| net.points = numbers.as_ptr());
         }
+        // A surface that the number type cannot hold beside one so much larger.
+        let vanishing: Vec<P> = lower(&model.surfaces[1], if size_of::<P::Scalar>() == 4 { 1e-36 } else { 1e-300 });
+        spoilt(PATCHRAY_SMALL, &|net| net.points = vanishing.as_ptr().cast());
         if P::RATIONAL {
             for bad in [0.0, -1.0] {
                 let mut numbers: Vec<P::Scalar> = vec![P::Scalar::ONE; right[1].points_len];

@@ -39,7 +39,7 @@ pub(crate) fn check(bytes: &[u8]) {
 const OF_ADDRESSES: [i32; 4] = [PATCHRAY_NULL, PATCHRAY_MISALIGNED, PATCHRAY_OVERLAP, PATCHRAY_COUNT];
 
 /// Codes that say what is wrong with what stands there; any of these may be seen first.
-const OF_CONTENTS: [i32; 13] = [
+const OF_CONTENTS: [i32; 14] = [
     PATCHRAY_LAYOUT_DIFFERS,
     PATCHRAY_OPTION,
     PATCHRAY_DEGREE,
@@ -48,6 +48,7 @@ const OF_CONTENTS: [i32; 13] = [
     PATCHRAY_WEIGHT,
     PATCHRAY_CAMERA_FLAT,
     PATCHRAY_CAMERA_FAR,
+    PATCHRAY_SMALL,
     PATCHRAY_RAY_NAN,
     PATCHRAY_RAY_INFINITE,
     PATCHRAY_RAY_DIRECTION,
@@ -125,7 +126,7 @@ fn refused_or_within(
         assert!(faults.contains(&code) || known, "{name}, though {faults:?} are to be refused");
     }
     // Control points are looked at where lent memory has been cleared.
-    let of_points = [PATCHRAY_POINT_NOT_FINITE, PATCHRAY_WEIGHT].contains(&code);
+    let of_points = [PATCHRAY_POINT_NOT_FINITE, PATCHRAY_WEIGHT, PATCHRAY_SMALL].contains(&code);
     let refused = OF_ADDRESSES.contains(&code) || (OF_CONTENTS.contains(&code) || !faults.is_empty()) && !of_points;
     let allowed = if refused { why.as_slice() } else { written };
     for at in changed {
