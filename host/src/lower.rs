@@ -166,12 +166,37 @@ fn points_of<P: FromFile>(
 }
 
 /// The index in `model`, and the reason, of each surface that this point type cannot hold: one that is not valid in the
-/// file, or whose numbers overflow, or whose weights vanish, in `f32`.
+/// file, or whose numbers overflow, or whose weights vanish, in `f32`; or that is too small beside the others.
 pub fn unfit<P: FromFile>(model: &Model) -> Vec<(usize, String)> {
     let origins = Origins::of(model, true);
-    let of = |(index, surface)| points_of::<P>(surface, index, &origins).err();
-    let reasons = model.surfaces.iter().enumerate().map(of);
-    reasons.enumerate().filter_map(|(index, reason)| Some((index, reason?))).collect()
+    let (mut unfit, mut left) = (Vec::new(), Vec::new());
+    for (index, surface) in model.surfaces.iter().enumerate() {
+        match points_of::<P>(surface, index, &origins) {
+            Ok(points) => left.push((index, points)),
+            Err(reason) => unfit.push((index, reason)),
+        }
+    }
+    // Ends: each turn leaves one out.
+    loop {
+        let (mut nets, mut own) = (Vec::new(), Vec::new());
+        for (index, points) in &left {
+            let ModelSurface { degree_u, degree_v, .. } = model.surfaces[*index];
+            // Its degrees were looked at with its points.
+            nets.extend(Net::new(degree_u, degree_v, points));
+            own.push(origins.own[*index]);
+        }
+        let options = SceneOptions { origin: origins.scene, ..SceneOptions::default() };
+        let refused = Scene::build_apart(&nets, &own, &options, nothing()).err();
+        let Some(SceneError::Surface { surface, error }) = refused else { break };
+        unfit.push((left.remove(surface as usize).0, error.to_string()));
+    }
+    unfit.sort();
+    unfit
+}
+
+/// No memory, to be told how much is needed.
+fn nothing<'m, P: Point>() -> SceneMemory<'m, P> {
+    SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] }
 }
 
 impl<P: FromFile> Lowered<P> {
@@ -196,7 +221,7 @@ impl<P: FromFile> Lowered<P> {
             nets.push(net.map_err(|error| LowerError::Internal(error.to_string()))?);
         }
         let mut slots = Slots::new(preparation.arena_bytes);
-        let mut lowered = Self::scene_of(&nets, &origins, &preparation.scene, stages, &mut slots)?;
+        let mut lowered = Self::scene_of(&nets, &origins, &preparation.scene, stages, numbers, &mut slots)?;
         let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());
         if diagonal > 0.0 && !(lowered.scene().frame().diagonal() > P::Scalar::ZERO) {
             return Err(LowerError::Vanishes { diagonal });
@@ -215,15 +240,18 @@ impl<P: FromFile> Lowered<P> {
         origins: &Origins<P::Scalar>,
         options: &SceneOptions<P::Scalar>,
         stages: Stages,
+        numbers: impl Fn(u32) -> usize,
         slots: &mut Slots,
     ) -> Result<Self, LowerError> {
         let refused = |error: SceneError| match error {
             SceneError::TooLarge => LowerError::TooLarge(error.to_string()),
+            SceneError::Surface { surface, error } => {
+                LowerError::Surface { index: surface as usize, number: numbers(surface), reason: error.to_string() }
+            }
             _ => LowerError::Internal(error.to_string()),
         };
         let options = &SceneOptions { origin: origins.scene, ..*options };
-        let nothing = SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] };
-        let needs = match Scene::build_apart(nets, &origins.own, options, nothing) {
+        let needs = match Scene::build_apart(nets, &origins.own, options, nothing()) {
             Ok(_) => Default::default(),
             Err(SceneError::Memory(needs)) => needs,
             Err(error) => return Err(refused(error)),
