@@ -110,7 +110,9 @@ impl<'c> Truth<'c> {
             of[0].max(of[1])
         };
         let grazing = largest(&|size, exact| 64.0 * (exact / size).sqrt());
-        if is_clear && hit.incidence != Incidence::Crossing && root.cosine > grazing {
+        // Of surfaces that share the edge that the ray meets, it may graze one and cross the other.
+        let same = hit.surface as usize == root.surface;
+        if is_clear && same && hit.incidence != Incidence::Crossing && root.cosine > grazing {
             return true;
         }
         // What is clear is as exact as rounding leaves it.
