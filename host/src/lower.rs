@@ -166,32 +166,12 @@ fn points_of<P: FromFile>(
 }
 
 /// The index in `model`, and the reason, of each surface that this point type cannot hold: one that is not valid in the
-/// file, or whose numbers overflow, or whose weights vanish, in `f32`; or that is too small beside the others.
+/// file, or whose numbers overflow, or whose weights vanish, in `f32`.
 pub fn unfit<P: FromFile>(model: &Model) -> Vec<(usize, String)> {
     let origins = Origins::of(model, true);
-    let (mut unfit, mut left) = (Vec::new(), Vec::new());
-    for (index, surface) in model.surfaces.iter().enumerate() {
-        match points_of::<P>(surface, index, &origins) {
-            Ok(points) => left.push((index, points)),
-            Err(reason) => unfit.push((index, reason)),
-        }
-    }
-    // Ends: each turn leaves one out.
-    loop {
-        let (mut nets, mut own) = (Vec::new(), Vec::new());
-        for (index, points) in &left {
-            let ModelSurface { degree_u, degree_v, .. } = model.surfaces[*index];
-            // Its degrees were looked at with its points.
-            nets.extend(Net::new(degree_u, degree_v, points));
-            own.push(origins.own[*index]);
-        }
-        let options = SceneOptions { origin: origins.scene, ..SceneOptions::default() };
-        let refused = Scene::build_apart(&nets, &own, &options, nothing()).err();
-        let Some(SceneError::Surface { surface, error }) = refused else { break };
-        unfit.push((left.remove(surface as usize).0, error.to_string()));
-    }
-    unfit.sort();
-    unfit
+    let of = |(index, surface)| points_of::<P>(surface, index, &origins).err();
+    let reasons = model.surfaces.iter().enumerate().map(of);
+    reasons.enumerate().filter_map(|(index, reason)| Some((index, reason?))).collect()
 }
 
 /// No memory, to be told how much is needed.
