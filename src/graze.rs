@@ -105,8 +105,7 @@ pub(crate) fn first_met<P: Point, const N: usize>(
     // Of a stretch, in order of worth: whether it lies before the interval; whether it passes the ray by more than rounding, as
     // where the surface leaves the ray slowly all within the tolerance; if it is held by no more than its net's error, its
     // distance; and its depth.
-    let mut least = None;
-    let mut best = None;
+    let mut first = None;
     // Of one root, the place that is nearest to the ray.
     let mut nearest_to_ray: Option<Place<P::Parameter>> = None;
     let (mut nearest, mut farthest) = (P::Scalar::INFINITY, P::Scalar::LEAST);
@@ -119,14 +118,14 @@ pub(crate) fn first_met<P: Point, const N: usize>(
         (nearest, farthest) = (nearest.lesser(depth), farthest.greater(depth));
         let faults = [planes.is_before_interval(depth), distance > exact.rounding + planes.noise()];
         let rank = (faults, distance.greater(exact.allowed()), depth);
-        if least.is_none_or(|least| rank < least) {
-            (least, best) = (Some(rank), Some(place));
+        if first.is_none_or(|(least, _)| rank < least) {
+            first = Some((rank, place));
         }
         if !planes.is_before_interval(depth) && nearest_to_ray.is_none_or(|old| distance < old.local.distance()) {
             nearest_to_ray = Some(place);
         }
     }
-    let Some(first) = best else { return Ok(None) };
+    let Some((_, first)) = first else { return Ok(None) };
     let place = nearest_to_ray.unwrap_or(first);
     let stretch = farthest - nearest;
     let in_contact = stretch > exact.size * P::Scalar::from_f64(CONTACT);
