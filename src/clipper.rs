@@ -171,7 +171,7 @@ pub struct Roots<'a, 's, 'm, P: Point> {
     /// Whether any region was bisected.
     bisected: bool,
     /// What the last root was.
-    sighting: Sighting<P::Scalar>,
+    sighting: Sighting<P::Parameter>,
     order: Order<P::Parameter>,
     pending: &'a mut VecView<Region<P::Parameter>>,
     found: &'a mut VecView<Root<P::Parameter>>,
@@ -185,10 +185,10 @@ impl<P: Point> Roots<'_, '_, '_, P> {
         !self.pending.is_empty()
     }
 
-    /// The depth of the root for which the last one stands: found before, but met behind it.
+    /// The root for which the last one stands: found before, but met behind it.
     #[inline(always)]
-    pub(crate) fn replaced(&self) -> Option<P::Scalar> {
-        if let Sighting::Nearer(depth) = self.sighting { Some(depth) } else { None }
+    pub(crate) fn replaced(&self) -> Option<Root<P::Parameter>> {
+        if let Sighting::Nearer(root) = self.sighting { Some(root) } else { None }
     }
 
     /// The next root; `None` if there are no more.

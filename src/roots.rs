@@ -27,13 +27,13 @@ pub(crate) struct Seen<'a, 'm, P: Point> {
 
 /// What a root is to those seen before.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Sighting<S> {
+pub(crate) enum Sighting<A: Parameter> {
     /// Another one.
     New,
     /// One of them.
     Known,
-    /// Not to be told from the one of this depth, but met before it.
-    Nearer(S),
+    /// Not to be told from this one, but met before it.
+    Nearer(Root<A>),
 }
 
 impl<P: Point> Seen<'_, '_, P> {
@@ -44,7 +44,7 @@ impl<P: Point> Seen<'_, '_, P> {
         root: &mut Root<P::Parameter>,
         roots: &mut VecView<Root<P::Parameter>>,
         basis: &mut BasisView<'_, P::Scalar>,
-    ) -> Result<Sighting<P::Scalar>, Limit> {
+    ) -> Result<Sighting<P::Parameter>, Limit> {
         if !roots.is_empty()
             && let Some(known) = self.compare(root, roots, basis)?
         {
@@ -62,7 +62,7 @@ impl<P: Point> Seen<'_, '_, P> {
         root: &mut Root<P::Parameter>,
         roots: &mut VecView<Root<P::Parameter>>,
         basis: &mut BasisView<'_, P::Scalar>,
-    ) -> Result<Option<Sighting<P::Scalar>>, Limit> {
+    ) -> Result<Option<Sighting<P::Parameter>>, Limit> {
         // A tolerance across the ray is more along it.
         let near = self.exact.allowed() * P::Scalar::from_u32(BESIDE);
         for old in roots.iter_mut() {
@@ -85,8 +85,7 @@ impl<P: Point> Seen<'_, '_, P> {
                 }
                 let first = root.depth < old.depth && self.planes.t_in_interval(root.depth).is_some();
                 if first {
-                    let of = core::mem::replace(old, *root);
-                    return Ok(Some(Sighting::Nearer(of.depth)));
+                    return Ok(Some(Sighting::Nearer(core::mem::replace(old, *root))));
                 }
                 return Ok(Some(Sighting::Known));
             }

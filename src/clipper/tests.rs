@@ -38,8 +38,8 @@ fn all<P: Point>(
     let mut search = clipper.roots(order)?;
     while let Some(root) = search.next(&mut work)? {
         // Not to be told from one that was found before, but nearer: it stands for that one.
-        if let Some(depth) = search.replaced() {
-            let old = roots.iter().position(|old: &Root<_>| old.depth == depth);
+        if let Some(replaced) = search.replaced() {
+            let old = roots.iter().position(|old: &Root<_>| *old == replaced);
             roots.remove(old.expect("it was found"));
         }
         roots.push(root);

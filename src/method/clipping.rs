@@ -95,8 +95,8 @@ pub fn all_hits<P: Point>(
         let mut roots = clipper.roots(Order::Any)?;
         // Ends with the roots.
         while let Some(root) = roots.next(work)? {
-            if let Some(depth) = roots.replaced() {
-                all.forget(surface.number, planes.t(depth));
+            if let Some(old) = roots.replaced() {
+                all.forget(&old.hit(surface.number, planes.t(old.depth)));
             }
             all.add(root, surface, planes, limits, &mut work.intersection_points);
         }

@@ -20,9 +20,9 @@ pub(super) struct Collected<'h, S> {
 }
 
 impl<S: Scalar> Collected<'_, S> {
-    /// Takes out a hit for which another one stands.
-    pub(super) fn forget(&mut self, surface: u32, t: S) {
-        self.hits.retain(|hit| !(hit.surface == surface && hit.t == t));
+    /// Takes out a hit for which another one stands. (By u and v, too: a surface that crosses itself is met twice at one t.)
+    pub(super) fn forget(&mut self, hit: &Hit<S>) {
+        self.hits.retain(|other| other != hit);
     }
 
     /// Adds a root of a surface, if it lies in the ray's interval and was not found before; counts it in `points`. Of a root that
@@ -54,7 +54,7 @@ impl<S: Scalar> Collected<'_, S> {
                 return;
             }
             let old = *old;
-            self.hits.retain(|hit| *hit != old);
+            self.forget(&old);
         } else {
             *points += 1;
         }

@@ -8,8 +8,8 @@ use patchray::point::Plain;
 use patchray::ray::Hit;
 use patchray::scalar::Scalar;
 use patchray_host::scene::model::Model;
-use patchray_host::scene::shapes::roots::{grid_of_roots, spread};
-use patchray_host::scene::shapes::{Random, bumpy, single};
+use patchray_host::scene::shapes::roots::{grid_of_roots, product, spread};
+use patchray_host::scene::shapes::{Random, bumpy, net, single};
 use patchray_host::scene::teapot;
 
 /// What `all_hits` says, and what its list holds.
@@ -114,6 +114,31 @@ fn the_range_of_t_cuts_the_list() {
     let five = spread(5);
     let through: Vec<_> = [-8.0, 0.0, 0.5].map(|z| Query::new([0.0, 0.0, z], [0.0, 0.0, 1.0])).to_vec();
     check::<Plain<f64>>(&single(grid_of_roots(&five, &five, 5, 5)), &through);
+}
+
+/// A sheet that is folded onto itself is met at one point by each of its layers: hits of one t, up to rounding. The layer at u = 1/2,
+/// where halves adjoin, is found from both, and what stands for it takes no other layer along.
+#[test]
+fn layers_that_are_met_at_one_t_are_all_listed() {
+    fn check<S: Scalar>()
+    where
+        Plain<S>: Kind<Scalar = S>,
+    {
+        let (mut random, mut room) = (Random(23), Room::new());
+        for _ in 0..3000 {
+            let layers = 2 + random.bits() as usize % 4;
+            let others = spread(layers - 1).into_iter().map(|u| 0.9 * u - 0.02);
+            let c = product(&others.chain([0.5]).collect::<Vec<_>>());
+            let (s, z) = (random.within(0.05, 0.95), [(); 3].map(|()| random.within(-1.0, 1.0)));
+            let model = single(net(layers, 2, |i, j| [c[i], j as f64 / 2.0 - s, z[j]]));
+            let built = Built::<Plain<S>>::new(&model, 1.0);
+            let query = Query::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+            let all = ask(&built, &query, &Limits::default(), &mut room);
+            assert_eq!((all.all, all.hits.len()), (Ok(()), layers), "{:?} {c:?} {s} {z:?}", all.hits);
+        }
+    }
+    check::<f64>();
+    check::<f32>();
 }
 
 /// Surfaces that lie over one another share their voxels: those that are left there when the first hit is found cost no
