@@ -6,7 +6,7 @@
 use patchray::bernstein::MAX_DEGREE;
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::patch::{Parallelepiped, Patch, Patches};
-use patchray::point::{Plain, Point, Weighted};
+use patchray::point::Point;
 use patchray::scalar::Scalar;
 use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions, SurfaceSlot};
 use patchray::subdivide::{PatchMemory, SubdivideError, SubdivideScratch, Subdivision, TreeMemory, subdivide};
@@ -14,15 +14,18 @@ use patchray::surface::Net;
 use patchray::tree::Tree;
 
 use crate::memory::{Bytes, Kind, Slots};
-use crate::scene::model::{Model, ModelSurface};
+use crate::scene::model::Model;
 use crate::scene::trace::Method;
 
 mod error;
+mod fit;
 mod place;
 mod view;
 mod worst_case;
 
 pub use error::LowerError;
+pub use fit::{FromFile, unfit};
+use fit::{nets_of, nothing, points_of};
 use place::Origins;
 pub use place::{Place, at_hand};
 
@@ -31,24 +34,6 @@ pub const ORDER: usize = MAX_DEGREE + 1;
 
 /// The control points of the largest net.
 pub const NET: usize = ORDER * ORDER;
-
-/// A kernel point that can be made from a file's numbers.
-pub trait FromFile: Point {
-    /// The point `[x, y, z, w]`, rounded to this precision; the weight is not multiplied in.
-    fn from_file(point: [f64; 4]) -> Self;
-}
-
-impl<S: Scalar> FromFile for Plain<S> {
-    fn from_file([x, y, z, _]: [f64; 4]) -> Self {
-        Plain([x, y, z].map(S::from_f64))
-    }
-}
-
-impl<S: Scalar> FromFile for Weighted<S> {
-    fn from_file([x, y, z, w]: [f64; 4]) -> Self {
-        Weighted::new([x, y, z].map(S::from_f64), S::from_f64(w))
-    }
-}
 
 /// Which stages to build beside the scene itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,35 +135,6 @@ pub struct Lowered<P: Point> {
     view: view::ViewSlots<P>,
 }
 
-/// The control points of a surface in the kernel's type, relative to its origins, checked.
-fn points_of<P: FromFile>(
-    surface: &ModelSurface,
-    index: usize,
-    origins: &Origins<P::Scalar>,
-) -> Result<Vec<P>, String> {
-    let relative = |&[x, y, z, w]: &[f64; 4]| {
-        let [x, y, z] = origins.relative(index, [x, y, z]);
-        P::from_file([x, y, z, w])
-    };
-    let points: Vec<P> = surface.points.iter().map(relative).collect();
-    Net::checked(surface.degree_u, surface.degree_v, &points).map_err(|error| error.to_string())?;
-    Ok(points)
-}
-
-/// The index in `model`, and the reason, of each surface that this point type cannot hold: one that is not valid in the
-/// file, or whose numbers overflow, or whose weights vanish, in `f32`.
-pub fn unfit<P: FromFile>(model: &Model) -> Vec<(usize, String)> {
-    let origins = Origins::of(model, true);
-    let of = |(index, surface)| points_of::<P>(surface, index, &origins).err();
-    let reasons = model.surfaces.iter().enumerate().map(of);
-    reasons.enumerate().filter_map(|(index, reason)| Some((index, reason?))).collect()
-}
-
-/// No memory, to be told how much is needed.
-fn nothing<'m, P: Point>() -> SceneMemory<'m, P> {
-    SceneMemory { points: &mut [], surfaces: &mut [], offsets: &mut [], references: &mut [] }
-}
-
 impl<P: FromFile> Lowered<P> {
     /// Lowers `model`, and builds the stages.
     ///
@@ -187,19 +143,12 @@ impl<P: FromFile> Lowered<P> {
     pub fn build(model: &Model, stages: Stages, preparation: &Preparation<P::Scalar>) -> Result<Self, LowerError> {
         let numbers = |index: u32| model.surfaces.get(index as usize).map_or(0, |surface| surface.number);
         let origins = Origins::of(model, preparation.own_origins);
-        let mut nets_points = Vec::new();
+        let mut points = Vec::new();
         for (index, surface) in model.surfaces.iter().enumerate() {
-            nets_points.push(points_of::<P>(surface, index, &origins).map_err(|reason| LowerError::Surface {
-                index,
-                number: surface.number,
-                reason,
-            })?);
+            let refused = |reason| LowerError::Surface { index, number: surface.number, reason };
+            points.push(points_of::<P>(surface, index, &origins).map_err(refused)?);
         }
-        let mut nets = Vec::new();
-        for (surface, points) in model.surfaces.iter().zip(&nets_points) {
-            let net = Net::new(surface.degree_u, surface.degree_v, points);
-            nets.push(net.map_err(|error| LowerError::Internal(error.to_string()))?);
-        }
+        let nets = nets_of(model, &points).map_err(|error| LowerError::Internal(error.to_string()))?;
         let mut slots = Slots::new(preparation.arena_bytes);
         let mut lowered = Self::scene_of(&nets, &origins, &preparation.scene, stages, numbers, &mut slots)?;
         let diagonal = model.control_box().map_or(0.0, |bounds| bounds.diagonal());

@@ -108,13 +108,23 @@ impl LoadedFile {
 impl Loaded {
     /// Refuses surfaces that the precision cannot hold, or leaves them out; a B-spline with all its pieces.
     fn fit(mut self, on_invalid: OnInvalid) -> Result<Self, Failure> {
-        let unfit = unfit_for(&self.model, self.settings.precision);
+        // Ends: each turn leaves one out at least.
+        loop {
+            let unfit = unfit_for(&self.model, self.settings.precision);
+            if unfit.is_empty() {
+                return Ok(self);
+            }
+            self.leave_out(&unfit, on_invalid)?;
+        }
+    }
+
+    fn leave_out(&mut self, unfit: &[(usize, String)], on_invalid: OnInvalid) -> Result<(), Failure> {
         let precision = match self.settings.precision {
             Precision::F32 => "f32",
             Precision::F64 => "f64",
         };
         let mut left_out = BTreeSet::new();
-        for (index, reason) in &unfit {
+        for (index, reason) in unfit {
             let Some(file) = self.file_of(*index) else {
                 continue;
             };
@@ -151,7 +161,7 @@ impl Loaded {
                 file.surfaces.end -= usize::from(file.surfaces.end > index);
             }
         }
-        Ok(self)
+        Ok(())
     }
 
     /// The file that holds the surface with this index in the model.

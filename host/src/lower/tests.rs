@@ -1,4 +1,5 @@
 use clap::ValueEnum;
+use patchray::point::{Plain, Weighted};
 
 use super::*;
 use crate::memory::Kind;

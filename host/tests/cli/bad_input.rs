@@ -200,6 +200,22 @@ fn what_is_invalid_can_be_left_out() {
 }
 
 #[test]
+fn what_vanishes_beside_the_rest_can_be_left_out() {
+    let folder = Folder::new();
+    let square = |side: &str| format!("1 1\n0 0 0\n0 {side} 0\n{side} 0 0\n{side} {side} 0\n");
+    folder.put("four.bpt", format!("4\n{}{}{}{}", square("1e-30"), square("1e17"), square("1e-10"), square("3e-31")));
+    folder.put("rays.csv", "ox,oy,oz,dx,dy,dz\n0.5e17,0.25e17,9e17,0,0,-1\n");
+    folder.fails("query four.bpt rays.csv --precision f32", 3, &["surface 0", "too small beside", "--skip-invalid"]);
+    let output = folder.done("query four.bpt rays.csv --precision f32 --skip-invalid");
+    let told = said(&output);
+    let left_out = |surface: usize| told.contains(&format!("surface {surface} left out (four.bpt)"));
+    assert_eq!([0, 1, 2, 3].map(left_out), [true, false, false, true], "{told}");
+    assert!(printed(&output).lines().nth(1).is_some_and(|line| line.starts_with("0,1,") && line.ends_with(",ok")));
+    // In 64 bits all of them stand.
+    assert_eq!(said(&folder.done("query four.bpt rays.csv --skip-invalid")).matches("left out").count(), 0);
+}
+
+#[test]
 fn too_little_room_ends_with_4() {
     let folder = Folder::new();
     for (flags, parts) in [
