@@ -24,8 +24,8 @@ use crate::surface::Surface;
 pub(crate) enum Across<S> {
     /// Apart from the ray by more than rounding.
     Apart,
-    /// A line through the ray, along this unit vector, to the error of the net, and crossed by the ray once
-    /// along each parameter line of u, or of v: what roots it may hold cannot be told apart.
+    /// A line through the ray, along this unit vector, to the error of the net, whose places on the ray are one stretch: what roots
+    /// it may hold cannot be told apart.
     Line([S; 2]),
     /// Neither.
     Open,
@@ -66,23 +66,61 @@ pub(crate) fn across<F: Flat>(degrees: Degrees, net: &[F], noise: &Noise<F::Scal
     if low > F::Scalar::ZERO || high < F::Scalar::ZERO {
         return Across::Apart;
     }
-    if thin && is_steady(degrees.columns(), net, along, noise) { Across::Line(along) } else { Across::Open }
+    if thin && is_one_stretch(degrees.columns(), net, along, noise) { Across::Line(along) } else { Across::Open }
 }
 
-/// Whether the distances along a unit vector grow, or fall, from each point of a net to the next in u, or in v, by more than
-/// rounding. A net that is a line may be a root in one parameter alone, with others beside it.
-fn is_steady<F: Flat>(columns: usize, net: &[F], [x, y]: [F::Scalar; 2], noise: &Noise<F::Scalar>) -> bool {
+/// Whether the places on the ray of a net that is a line along a unit vector are one stretch, as far as the net tells: the distances
+/// along grow, or fall, from each point to the next in one parameter by more than rounding, and change their sign once at most
+/// along either end of it.
+///
+/// Then the ray meets each parameter line once at most, and those that it meets within the net are the parameters at which the
+/// one end lies on this side and the other on that. By the variation diminishing property of Bernstein polynomials that is an
+/// interval. Of a sheet between two curves, which a plane through the ray cuts in a curve, it is more than one where the ray meets
+/// that curve more than once.
+fn is_one_stretch<F: Flat>(columns: usize, net: &[F], [x, y]: [F::Scalar; 2], noise: &Noise<F::Scalar>) -> bool {
     let error = noise.error * (x.abs() + y.abs());
+    let along = |p: F| {
+        let [f, g] = p.f_g();
+        f * x + g * y
+    };
     let extent = |[low, high]: [F::Scalar; 2], (&p, &q): (&F, &F)| {
-        let ([f, g], off) = ((q - p).f_g(), error * (p.weight() + q.weight()));
-        let step = f * x + g * y;
+        let (step, off) = (along(q - p), error * (p.weight() + q.weight()));
         [low.lesser(step - off), high.greater(step + off)]
     };
+    let steady = |[low, high]: [F::Scalar; 2]| low > F::Scalar::ZERO || high < F::Scalar::ZERO;
     let none = [F::Scalar::INFINITY, F::Scalar::LEAST];
     let along_u = net.iter().zip(net.iter().skip(columns)).fold(none, extent);
     let rows = net.chunks_exact(columns);
-    let along_v = rows.fold(none, |both, row| row.iter().zip(row.iter().skip(1)).fold(both, extent));
-    [along_u, along_v].iter().any(|[low, high]| *low > F::Scalar::ZERO || *high < F::Scalar::ZERO)
+    let along_v = rows.clone().fold(none, |both, row| row.iter().zip(row.iter().skip(1)).fold(both, extent));
+    let seen = |p: &F| (along(*p), error * p.weight());
+    let [first_row, last_row] = [rows.clone().next(), rows.clone().next_back()].map(|row| row.unwrap_or(&[]));
+    let column = |k: usize| net.iter().skip(k).step_by(columns);
+    steady(along_u) && [first_row, last_row].iter().all(|row| changes_sign_once(row.iter().map(seen)))
+        || steady(along_v) && [0, columns - 1].iter().all(|&k| changes_sign_once(column(k).map(seen)))
+}
+
+/// Whether numbers, each off by what stands beside it at most, change their sign once at most. Of those that may be 0 only some at
+/// one end, or between two signs, are let pass: others may hide a change and another one back. Where all may be 0, all lie on the
+/// ray.
+fn changes_sign_once<S: Scalar>(numbers: impl Iterator<Item = (S, S)>) -> bool {
+    let (mut changes, mut before, mut unsure) = (0, None, false);
+    for (number, off) in numbers {
+        let positive = if number > off {
+            true
+        } else if number < -off {
+            false
+        } else {
+            unsure = true;
+            continue;
+        };
+        changes += match before {
+            Some(before) if before == positive => 2 * i32::from(unsure),
+            Some(_) => 1,
+            None => i32::from(unsure),
+        };
+        (before, unsure) = (Some(positive), false);
+    }
+    before.is_none() || changes + i32::from(unsure) <= 1
 }
 
 /// A place on the ray, and what the ray does there at least.
@@ -260,26 +298,31 @@ pub(crate) fn on_line<P: Point>(
         Ok(place)
     };
     let [first, second] = [reached(ends[0])?, reached(ends[1])?];
-    // A region may be thin alone, with a root like any other: then Newton's method comes nearer to it, and the ends do not.
-    let middle = polished(surface, whole, region, middle.at, exact, basis)?;
     // Of a line that may reach into the interval from outside, a smaller part has to be looked at.
     let (mut inside, mut before, mut behind) = (false, false, false);
     let mut known = true;
+    // What is not apart from the ray by the net's error, across the line, may be |f| + |g| of twice that: less would leave places
+    // that are neither passed nor on the ray.
+    let held = error + error;
+    let is_known = |place: &Place<P::Parameter>| place.local.distance() <= exact.allowed() + held;
     for place in [&middle, &first, &second] {
         let depth = planes.depth_on(&surface.net, place.at, basis).map_err(|Full| Limit::Scratch)?;
-        let unknown = !(place.local.distance() <= exact.allowed() + error);
+        let unknown = !is_known(place);
         known &= !unknown;
         inside |= !unknown && planes.t_in_interval(depth).is_some();
         before |= unknown || planes.is_before_interval(depth);
         behind |= unknown || !planes.is_before_interval(depth);
     }
-    // Likewise of one that the ray follows, if its ends are not found, since it is bent; or if it begins before the interval and
-    // goes on in it, and so is met where the interval begins.
-    let followed = middle.local.may_be_singular(exact.reach) && region.is_divisible();
-    if (!inside && before && behind) || (followed && (!known || (inside && before))) {
+    // Likewise where the steps toward the line were led astray, as they may be in a region as large as a bent sheet that a plane
+    // through the ray cuts; or of a line that the ray follows, if its ends are not found, since it is bent, or if it begins before
+    // the interval and goes on in it, and so is met where the interval begins.
+    let followed = middle.local.may_be_singular(exact.reach) && (!known || (inside && before));
+    if (!inside && before && behind) || (region.is_divisible() && (!is_known(&middle) || followed)) {
         return Ok(None);
     }
-    first_met(surface, planes, [middle, first, second], exact, error, basis)
+    // A region may be thin alone, with a root like any other: then Newton's method comes nearer to it, and the ends do not.
+    let middle = polished(surface, whole, region, middle.at, exact, basis)?;
+    first_met(surface, planes, [middle, first, second], exact, held, basis)
 }
 
 #[cfg(test)]

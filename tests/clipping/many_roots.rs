@@ -56,6 +56,45 @@ fn twenty_five_roots_on_one_ray() {
     }
 }
 
+/// A sheet between two curves in parallel planes, cut by rays in a plane between them: after one clip the net is all but a line, and
+/// the ray meets it as often as its section. The curves are graphs of known roots, one beside the other by a step that has a part
+/// along the ray.
+#[test]
+fn a_sheet_is_met_as_often_as_its_section() {
+    fn check<P: Kind>(least: f64) {
+        let (mut random, mut room) = (Random(29), Room::<P>::new());
+        for _ in 0..4000 {
+            let count = 1 + random.bits() as usize % 4;
+            let mut roots: Vec<f64> = (0..count).map(|_| random.within(0.05, 0.95)).collect();
+            roots.sort_by(f64::total_cmp);
+            if roots.windows(2).any(|pair| pair[1] - pair[0] < least) {
+                continue;
+            }
+            let step = random.point(1.0);
+            let twisted = |[x, y, z]: [f64; 3]| [x + step[0] * y, (step[1] + 1.5) * y, z + step[2] * y];
+            let at = random.within(0.05, 0.95);
+            let model = mapped(&single(folded(&roots, 1)), twisted);
+            let origin = twisted([-1.0 - random.within(0.0, 1.0), at, 0.0]);
+            let query = Query::new(origin, [1.0, 0.0, 0.0]);
+            for (model, query) in [
+                (model.clone(), query),
+                (mapped(&model, askew), Query { origin: askew(origin), direction: askew([1.0, 0.0, 0.0]), ..query }),
+            ] {
+                let built = Built::<P>::new(&model, 1.0);
+                let all = ask(&built, &query, &Limits::default(), &mut room);
+                assert_eq!((all.all, all.hits.len()), (Ok(()), count), "{roots:?} {step:?} {at} {:?}", all.hits);
+                for (hit, root) in all.hits.iter().zip(&roots) {
+                    let off = hit.t.to_f64() - (root + step[0] * at - origin[0]);
+                    assert!(off.abs() < least * 0.1, "{roots:?} {step:?} {at} {hit:?} {off}");
+                }
+            }
+        }
+    }
+    check::<Plain<f64>>(1e-3);
+    check::<Weighted<f64>>(1e-3);
+    check::<Plain<f32>>(0.1);
+}
+
 #[test]
 fn as_many_roots_as_the_degree() {
     for (count, n) in [(2, 1), (3, 3), (6, 2), (6, 3), (9, 1), (12, 2), (15, 15)] {
