@@ -69,9 +69,9 @@ pub(crate) fn across<F: Flat>(degrees: Degrees, net: &[F], noise: &Noise<F::Scal
     if thin && is_one_stretch(degrees.columns(), net, along, noise) { Across::Line(along) } else { Across::Open }
 }
 
-/// Whether the places on the ray of a net that is a line along a unit vector are one stretch, as far as the net tells: the distances
-/// along grow, or fall, from each point to the next in one parameter by more than rounding, and change their sign once at most
-/// along either end of it.
+/// Whether the places on the ray of a net that is a line along a unit vector are one stretch, as far as the net tells: the
+/// distances along grow, or fall, from each point to the next in one parameter by more than rounding, and change their sign once at
+/// most along either end of it.
 ///
 /// Then the ray meets each parameter line once at most, and those that it meets within the net are the parameters at which the
 /// one end lies on this side and the other on that. By the variation diminishing property of Bernstein polynomials that is an

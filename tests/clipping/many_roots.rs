@@ -56,9 +56,9 @@ fn twenty_five_roots_on_one_ray() {
     }
 }
 
-/// A sheet between two curves in parallel planes, cut by rays in a plane between them: after one clip the net is all but a line, and
-/// the ray meets it as often as its section. The curves are graphs of known roots, one beside the other by a step that has a part
-/// along the ray.
+/// A sheet between two curves in parallel planes, cut by rays in a plane between them: after one clip the net is all but a line,
+/// and the ray meets it as often as its section. The curves are graphs of known roots, one beside the other by a step that has a
+/// part along the ray.
 #[test]
 fn a_sheet_is_met_as_often_as_its_section() {
     fn check<P: Kind>(least: f64) {
