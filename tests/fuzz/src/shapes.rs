@@ -264,10 +264,10 @@ pub(crate) fn target(case: &Case, bytes: &mut Bytes<'_>) -> [f64; 3] {
     point.map(|c| in_precision(c, case.precision))
 }
 
-/// A ray at such a point: along an axis, from anywhere, at a shallow angle, or along the net.
+/// A ray at such a point: along an axis, in a plane across one, from anywhere, at a shallow angle, or along the net.
 pub(crate) fn ray(case: &Case, bytes: &mut Bytes<'_>) -> RayLine {
     let unit = case.numbers.size();
-    let kind = bytes.below(8);
+    let kind = bytes.below(16);
     let mut target = target(case, bytes);
     if bytes.rarely(4) {
         let step = (-f64::from(bytes.byte() % 50)).exp2() * unit;
@@ -285,20 +285,26 @@ pub(crate) fn ray(case: &Case, bytes: &mut Bytes<'_>) -> RayLine {
         direction
     };
     let (origin, direction) = match kind {
-        0..3 => {
+        // Of a net whose rows or columns lie in planes across an axis all but one curve is out of the way.
+        12 => {
+            let mut direction = [0; 3].map(|_| height(bytes) * unit);
+            direction[bytes.below(3)] = 0.0;
+            from_afar(direction)
+        }
+        0..3 | 8..11 => {
             let side = if bytes.byte() & 1 == 0 { -1.0 } else { 1.0 };
             from_afar(along(bytes.one_of(&[2, 2, 2, 0, 1]), side))
         }
-        3 | 4 => {
+        3 | 4 | 11 => {
             let origin = round([0, 1, 2].map(|k| target[k] + case.number(bytes) - if k == 2 { 0.0 } else { unit }));
             (origin, round([0, 1, 2].map(|k| target[k] - origin[k])))
         }
-        5 => {
+        5 | 13 => {
             let slope = (-f64::from(bytes.byte() % 20)).exp2() * unit;
             let [x, y] = [0; 2].map(|_| height(bytes) * unit);
             from_afar([x + unit, y, -slope])
         }
-        6 => {
+        6 | 14 => {
             let points = &case.model.surfaces[0].points;
             let [a, b] = [0; 2].map(|_| points[usize::from(bytes.byte()) % points.len()]);
             from_afar([0, 1, 2].map(|k| b[k] - a[k]))

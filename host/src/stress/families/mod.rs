@@ -7,6 +7,7 @@ mod grazing;
 mod jumps;
 mod layers;
 mod placed;
+mod sections;
 mod sizes;
 mod stalled;
 mod stretched;
@@ -28,6 +29,7 @@ pub fn all() -> Vec<Family> {
         &sizes::FAMILIES,
         &thin::FAMILIES,
         &stalled::FAMILIES,
+        &sections::FAMILIES,
         &jumps::FAMILIES,
         &contact::FAMILIES,
     ]
