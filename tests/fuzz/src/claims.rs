@@ -54,6 +54,8 @@ pub(crate) struct Exactness {
     share: f64,
     /// The precision's unit of rounding.
     pub(crate) unit: f64,
+    /// Its least positive number, which is how far apart numbers are about 0.
+    least: f64,
 }
 
 /// Roundings of the largest coordinate; and more of them for each degree of u and of v, since evaluation is a sum over rows of sums
@@ -67,8 +69,10 @@ const OF_NETS: f64 = 8.0;
 impl Exactness {
     pub(crate) fn of(precision: Precision) -> Self {
         match precision {
-            Precision::F64 => Exactness { share: 1e-14, unit: f64::EPSILON },
-            Precision::F32 => Exactness { share: 2e-6, unit: f64::from(f32::EPSILON) },
+            Precision::F64 => Exactness { share: 1e-14, unit: f64::EPSILON, least: f64::from_bits(1) },
+            Precision::F32 => {
+                Exactness { share: 2e-6, unit: f64::from(f32::EPSILON), least: f64::from(f32::from_bits(1)) }
+            }
         }
     }
 
@@ -83,7 +87,7 @@ impl Exactness {
     /// What rounding t moves the ray's point by, along the ray.
     pub(crate) fn of_t(self, t: f64, ray: &RayLine) -> f64 {
         let [x, y, z] = ray.direction;
-        2.0 * self.unit * t.abs() * x.hypot(y).hypot(z)
+        2.0 * (self.unit * t.abs() + self.least) * x.hypot(y).hypot(z)
     }
 }
 
