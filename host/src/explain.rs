@@ -12,9 +12,7 @@ use patchray::story::Event;
 use patchray::told::{Listener, Told};
 
 use crate::lower::{FromFile, LowerError, Lowered, Stages};
-use crate::method::Views;
-use crate::prepared::{is_rational, lines_tracer, rays_tracer};
-use crate::scanline::view::LineOptions;
+use crate::prepared::{Others, is_rational, tracers};
 use crate::scanline::{Outcome, Tally, rays_of};
 use crate::scene::camera::View;
 use crate::scene::model::Model;
@@ -73,18 +71,9 @@ fn stories<P: FromFile>(
     view: &View,
     [px, py]: [u32; 2],
 ) -> Result<Vec<Story>, LowerError> {
-    let has_view = Lowered::<P>::build(model, Stages::NONE, &settings.preparation())?.no_view(view).is_none();
-    let stages = if has_view { Stages::of_view(settings.method) } else { Stages::of(settings.method.of_any_rays()) };
-    let mut lowered = Lowered::<P>::build(model, stages, &settings.preparation())?;
+    let mut lowered = Lowered::<P>::for_picture(model, Stages::of(settings.method), settings, view)?;
     let unit = lowered.scene().frame().unscale().to_f64();
-    let tracer = if has_view {
-        lowered.take_view(view, settings.limits.arena_bytes.unwrap_or(u64::MAX))?;
-        let options = LineOptions { patches: stages.has_patches(), coherence: true };
-        let (views, seen) = lowered.seen(view)?;
-        lines_tracer((views.scene, seen), view, settings, options, None)
-    } else {
-        rays_tracer(Views::of(&lowered), settings)
-    };
+    let tracer = tracers(&mut lowered, view, settings, true, Others { closest: false, any: false })?.picture;
     let side = view.sampling.side();
     let mut stories = Vec::new();
     for line in side * py..side * (py + 1) {

@@ -56,7 +56,7 @@ impl Stages {
     /// All there are.
     pub const ALL: Self = Stages { patches: true, tree: true, grids: true };
 
-    /// Those that a method needs for any rays; one that [needs a view](Method::needs_view), for that.
+    /// Those that a method needs: for any rays, or if it [needs a view](Method::needs_view) for the rays of one.
     pub fn of(method: Method) -> Self {
         match method {
             Method::Newton => Stages { tree: true, ..Stages::PATCHES },
@@ -64,11 +64,6 @@ impl Stages {
             Method::Clipping => Stages::NONE,
             Method::NewtonPredicted | Method::ClippingPredicted => Stages::PATCHES,
         }
-    }
-
-    /// Those that a method needs for the rays of a view: no tree and no grids.
-    pub fn of_view(method: Method) -> Self {
-        if method == Method::Clipping { Stages::NONE } else { Stages::PATCHES }
     }
 
     /// All that is in either.

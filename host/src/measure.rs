@@ -142,23 +142,19 @@ pub(crate) fn found_twice(each: &[Work], truths: &[Truth]) -> u64 {
 }
 
 impl Scene<'_> {
-    /// The scene made ready for views, by any method: clipping has patches too, and is compared at its fastest.
+    /// The scene made ready for a method and a picture.
+    fn viewed(&self, method: Method, coherence: bool, picture: &View) -> Result<Viewed, LowerError> {
+        let settings = Settings { method, ..self.settings };
+        Viewed::build(self.model, &settings, picture, Wishes { coherence, ..Wishes::PRIMARY })
+    }
+
+    /// Tables 1 and 2; answers are judged by the `truths`, if there are any.
     ///
     /// # Errors
     /// As [`Viewed::build`].
-    pub fn viewed(&self) -> Result<Viewed, LowerError> {
-        let settings = Settings { method: Method::Newton, ..self.settings };
-        Viewed::build(self.model, &settings, &self.picture, Wishes { patches: true, ..Wishes::PRIMARY })
-    }
-
-    /// Tables 1 and 2, of the scene as [`Scene::viewed`] makes it ready; answers are judged by the `truths`, if there
-    /// are any.
-    ///
-    /// # Errors
-    /// As [`Viewed::with`].
-    pub fn primary(&self, viewed: &Viewed, truths: Option<&[Truth]>) -> Result<Primary, LowerError> {
+    pub fn primary(&self, truths: Option<&[Truth]>) -> Result<Primary, LowerError> {
         let subjects = SUBJECTS.as_flattened();
-        let viewed = subjects.iter().map(|&(method, coherence)| viewed.with(method, coherence, &self.picture));
+        let viewed = subjects.iter().map(|&(method, coherence)| self.viewed(method, coherence, &self.picture));
         let mut viewed = viewed.collect::<Result<Vec<_>, _>>()?;
         let tracers = viewed.iter_mut().map(Viewed::tracer).collect::<Result<Vec<_>, _>>()?;
         let size = tracers.first().map_or([0; 2], |(_, used)| [used.surfaces, used.patches]);
@@ -212,14 +208,14 @@ impl Scene<'_> {
         Ok(Primary { runs, outcomes: by_clipping, size })
     }
 
-    /// Table 3, of the scene as [`Scene::viewed`] makes it ready.
+    /// Table 3.
     ///
     /// # Errors
-    /// As [`Viewed::with`].
-    pub fn samplings(&self, viewed: &Viewed) -> Result<Vec<SamplingRun>, LowerError> {
+    /// As [`Viewed::build`].
+    pub fn samplings(&self) -> Result<Vec<SamplingRun>, LowerError> {
         let pictures = [Sampling::Uniform, Sampling::Jittered].map(|sampling| self.picture.sampled(sampling));
         let subjects: Vec<_> = SAMPLED.iter().flat_map(|&method| pictures.map(|picture| (method, picture))).collect();
-        let viewed = subjects.iter().map(|(method, picture)| viewed.with(*method, true, picture));
+        let viewed = subjects.iter().map(|(method, picture)| self.viewed(*method, true, picture));
         let mut viewed = viewed.collect::<Result<Vec<_>, _>>()?;
         let tracers = viewed.iter_mut().map(Viewed::tracer).collect::<Result<Vec<_>, _>>()?;
         let lanes = tracers.iter().map(|(tracer, _)| tracer.lane());
@@ -348,10 +344,9 @@ mod tests {
             repetitions: 2,
             step: &|| steps.set(steps.get() + 1),
         };
-        let viewed = scene.viewed().expect("there is memory");
         let oracle = crate::oracle::Oracle::new(&loaded.model);
         let (truths, _) = crate::judge::ask(&oracle, &picture, || {});
-        let Primary { runs, outcomes, size } = scene.primary(&viewed, Some(&truths)).expect("there is memory");
+        let Primary { runs, outcomes, size } = scene.primary(Some(&truths)).expect("there is memory");
         assert_eq!(size[0], 32);
         let hits = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
         for runs in &runs {
@@ -363,7 +358,7 @@ mod tests {
                 assert!(run.found_twice.expect("it was judged") < run.intersection_points);
             }
         }
-        assert_eq!(scene.samplings(&viewed).expect("there is memory").len(), 4);
+        assert_eq!(scene.samplings().expect("there is memory").len(), 4);
         let rays = scene.one_by_one(&outcomes).expect("there is memory");
         let counts: Vec<u64> = rays.iter().map(|run| run.rays).collect();
         let hits = hits as u64;

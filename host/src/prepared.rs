@@ -12,7 +12,7 @@ use crate::lower::{LowerError, Lowered, Stages, unfit};
 use crate::memory::Bytes;
 use crate::method::in_view::{ClippingPredicted, NewtonPredicted, ViewMethod};
 use crate::method::{AllHits, AnyHit, Clipping, ClippingCoherent, Method, Newton, NewtonCoherent, Views};
-use crate::scanline::view::{LineOptions, ViewTracer, most_lane_bytes};
+use crate::scanline::view::{ViewTracer, most_lane_bytes};
 use crate::scanline::{Found, LaneBytes, MethodTracer, Told, Tracer};
 use crate::scene::camera;
 use crate::scene::model::Model;
@@ -60,12 +60,12 @@ pub fn unfit_for(model: &Model, precision: Precision) -> Vec<(usize, String)> {
 }
 
 /// The tracer of the method `M` under the limits of `settings`.
-fn tracer<'m, M, P>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer<Told<M, P>> + 'm>
+fn tracer<'m, M, P>(views: Views<'m, P>, settings: &Settings, coherence: bool) -> Box<dyn Tracer<Told<M, P>> + 'm>
 where
     M: Method<P> + 'm,
     P: Point,
 {
-    Box::new(MethodTracer::<M, P>::new(views, settings.limits()))
+    Box::new(MethodTracer::<M, P>::new(views, settings.limits(), coherence))
 }
 
 /// Which rays are traced beside those of a picture's scan lines.
@@ -85,68 +85,75 @@ pub struct Tracers<'m> {
     pub any: Option<Box<dyn Tracer + 'm>>,
 }
 
-/// What the scan lines of a view are traced by: the scene, and the kernel's view of it.
-type Seen<'m, P> = (Scene<'m, P>, View<'m, P>);
-
-fn lines_tracer_of<'m, M, P>(
-    seen: Seen<'m, P>,
+/// The tracer of a picture's scan lines by a method for the rays of a view, which the kernel's view of the scene is; `others`
+/// traces all other rays.
+fn lines_tracer<'m, M, P>(
+    seen: (Scene<'m, P>, View<'m, P>),
     picture: &camera::View,
     settings: &Settings,
-    options: LineOptions,
+    coherence: bool,
     others: Option<Box<dyn Tracer + 'm>>,
 ) -> Box<dyn Tracer + 'm>
 where
     M: ViewMethod<P> + 'm,
     P: Point,
 {
-    Box::new(ViewTracer::<M, P>::new(seen, picture, settings.limits(), options, others))
+    Box::new(ViewTracer::<M, P>::new(seen, picture, settings.limits(), coherence, others))
 }
 
-/// The tracer of the picture's scan lines, by the method of `settings`; `others` traces all other rays.
-pub(crate) fn lines_tracer<'m, P: Point>(
-    seen: Seen<'m, P>,
+/// The tracers of the picture's rays, by the method of `settings`. The memory of its view, if it needs one, has to have been
+/// taken.
+pub(crate) fn tracers<'m, P: Point>(
+    lowered: &'m mut Lowered<P>,
     picture: &camera::View,
     settings: &Settings,
-    options: LineOptions,
-    others: Option<Box<dyn Tracer + 'm>>,
-) -> Box<dyn Tracer + 'm> {
-    match settings.method {
-        Which::Newton => lines_tracer_of::<Newton, P>(seen, picture, settings, options, others),
-        Which::NewtonCoherent => lines_tracer_of::<NewtonCoherent, P>(seen, picture, settings, options, others),
-        Which::Clipping => lines_tracer_of::<Clipping, P>(seen, picture, settings, options, others),
-        Which::ClippingCoherent => lines_tracer_of::<ClippingCoherent, P>(seen, picture, settings, options, others),
-        Which::NewtonPredicted => lines_tracer_of::<NewtonPredicted, P>(seen, picture, settings, options, others),
-        Which::ClippingPredicted => lines_tracer_of::<ClippingPredicted, P>(seen, picture, settings, options, others),
-    }
+    coherence: bool,
+    others: Others,
+) -> Result<Tracers<'m>, LowerError> {
+    let (views, seen) = if settings.method.needs_view() {
+        let (views, seen) = lowered.seen(picture)?;
+        (views, Some((views.scene, seen)))
+    } else {
+        (Views::of(lowered), None)
+    };
+    let rays = |coherence| rays_tracer(views, settings, coherence);
+    let closest = || others.closest.then(|| rays(true));
+    let of_picture = match (settings.method, seen) {
+        (Which::NewtonPredicted, Some(seen)) => {
+            lines_tracer::<NewtonPredicted, P>(seen, picture, settings, coherence, closest())
+        }
+        (Which::ClippingPredicted, Some(seen)) => {
+            lines_tracer::<ClippingPredicted, P>(seen, picture, settings, coherence, closest())
+        }
+        _ => rays(coherence),
+    };
+    Ok(Tracers { picture: of_picture, any: others.any.then(|| any_tracer(views, settings)) })
 }
 
-fn most_lane_bytes_of<P: Point>(method: Which, lowered: &Lowered<P>) -> LaneBytes {
+fn most_lane_bytes_of<P: Point>(method: Which, lowered: &Lowered<P>) -> Option<LaneBytes> {
     let (surfaces, patches) = (lowered.scene().len(), lowered.patches().all().len());
     match method {
-        Which::Newton => most_lane_bytes::<Newton, P>(surfaces, patches),
-        Which::NewtonCoherent => most_lane_bytes::<NewtonCoherent, P>(surfaces, patches),
-        Which::Clipping => most_lane_bytes::<Clipping, P>(surfaces, surfaces),
-        Which::ClippingCoherent => most_lane_bytes::<ClippingCoherent, P>(surfaces, patches),
-        Which::NewtonPredicted => most_lane_bytes::<NewtonPredicted, P>(surfaces, patches),
-        Which::ClippingPredicted => most_lane_bytes::<ClippingPredicted, P>(surfaces, patches),
+        Which::NewtonPredicted => Some(most_lane_bytes::<NewtonPredicted, P>(surfaces, patches)),
+        Which::ClippingPredicted => Some(most_lane_bytes::<ClippingPredicted, P>(surfaces, patches)),
+        Which::Newton | Which::NewtonCoherent | Which::Clipping | Which::ClippingCoherent => None,
     }
 }
 
 /// The tracer of any rays, of the closest hits.
-pub(crate) fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
+fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings, coherence: bool) -> Box<dyn Tracer + 'm> {
     match settings.method.of_any_rays() {
-        Which::Newton => tracer::<Newton, _>(views, settings),
-        Which::NewtonCoherent | Which::NewtonPredicted => tracer::<NewtonCoherent, _>(views, settings),
-        Which::Clipping => tracer::<Clipping, _>(views, settings),
-        Which::ClippingCoherent | Which::ClippingPredicted => tracer::<ClippingCoherent, _>(views, settings),
+        Which::Newton => tracer::<Newton, _>(views, settings, coherence),
+        Which::NewtonCoherent | Which::NewtonPredicted => tracer::<NewtonCoherent, _>(views, settings, coherence),
+        Which::Clipping => tracer::<Clipping, _>(views, settings, coherence),
+        Which::ClippingCoherent | Which::ClippingPredicted => tracer::<ClippingCoherent, _>(views, settings, coherence),
     }
 }
 
 /// The tracer of any rays, of the first hits that are found, by [`Which::of_any_hits`].
 fn any_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
     match settings.method.of_any_hits() {
-        Which::Newton => tracer::<AnyHit<Newton>, _>(views, settings),
-        _ => tracer::<AnyHit<Clipping>, _>(views, settings),
+        Which::Newton => tracer::<AnyHit<Newton>, _>(views, settings, true),
+        _ => tracer::<AnyHit<Clipping>, _>(views, settings, true),
     }
 }
 
@@ -171,10 +178,28 @@ impl Prepared {
         })
     }
 
+    /// The same for a picture: with the memory of its view, if the method needs one.
+    ///
+    /// # Errors
+    /// As [`Lowered::for_picture`].
+    pub fn for_picture(
+        model: &Model,
+        stages: Stages,
+        settings: &Settings,
+        picture: &camera::View,
+    ) -> Result<Self, LowerError> {
+        Ok(match (settings.precision, is_rational(model)) {
+            (Precision::F32, false) => Self::PlainF32(Lowered::for_picture(model, stages, settings, picture)?),
+            (Precision::F64, false) => Self::PlainF64(Lowered::for_picture(model, stages, settings, picture)?),
+            (Precision::F32, true) => Self::WeightedF32(Lowered::for_picture(model, stages, settings, picture)?),
+            (Precision::F64, true) => Self::WeightedF64(Lowered::for_picture(model, stages, settings, picture)?),
+        })
+    }
+
     /// The tracer of the method, and under the limits, of `settings`: of the closest hits. The method's stages have to have
     /// been built. In place of a method that needs a view it is that of [`Which::of_any_rays`].
     pub fn tracer(&self, settings: &Settings) -> Box<dyn Tracer + '_> {
-        any!(self, lowered => rays_tracer(Views::of(lowered), settings))
+        any!(self, lowered => rays_tracer(Views::of(lowered), settings, true))
     }
 
     /// Why the kernel cannot trace all of the picture's rays as those of one view, if it cannot. Needs no stages.
@@ -191,43 +216,29 @@ impl Prepared {
         any!(self, lowered => lowered.take_view(picture, given))
     }
 
-    /// The tracers of the picture's rays without a view: its scan lines' are then traced as any others.
-    pub fn tracers(&self, settings: &Settings, others: Others) -> Tracers<'_> {
-        any!(self, lowered => {
-            let views = Views::of(lowered);
-            Tracers { picture: rays_tracer(views, settings), any: others.any.then(|| any_tracer(views, settings)) }
-        })
-    }
-
-    /// The tracers of the picture's rays, under the limits and by the method of `settings`, and of what `others` wants. The
-    /// view's memory has to have been taken.
+    /// The tracers of the picture's rays, under the limits and by the method of `settings`, and of what `others` wants. Without
+    /// `coherence` a coherent method begins anew with every ray of the picture. The method's stages have to have been built, and
+    /// the memory of its view taken, if it needs one.
     ///
     /// # Errors
     /// As [`Lowered::seen`].
-    pub fn view_tracers(
+    pub fn tracers(
         &mut self,
         picture: &camera::View,
         settings: &Settings,
-        options: LineOptions,
+        coherence: bool,
         others: Others,
     ) -> Result<Tracers<'_>, LowerError> {
-        any!(self, lowered => {
-            let (views, seen) = lowered.seen(picture)?;
-            let closest = others.closest.then(|| rays_tracer(views, settings));
-            Ok(Tracers {
-                picture: lines_tracer((views.scene, seen), picture, settings, options, closest),
-                any: others.any.then(|| any_tracer(views, settings)),
-            })
-        })
+        any!(self, lowered => tracers(lowered, picture, settings, coherence, others))
     }
 
-    /// The same of all hits; `None` if the method looks for no more than the closest.
+    /// The tracer of all hits; `None` if the method looks for no more than the closest.
     pub fn tracer_of_all(&self, settings: &Settings) -> Option<Box<dyn Tracer<Vec<Found>> + '_>> {
         any!(self, lowered => {
             let views = Views::of(lowered);
             match settings.method {
-                Which::Newton => Some(tracer::<AllHits<Newton>, _>(views, settings)),
-                Which::Clipping => Some(tracer::<AllHits<Clipping>, _>(views, settings)),
+                Which::Newton => Some(tracer::<AllHits<Newton>, _>(views, settings, true)),
+                Which::Clipping => Some(tracer::<AllHits<Clipping>, _>(views, settings, true)),
                 _ => None,
             }
         })
@@ -239,14 +250,9 @@ impl Prepared {
         wanted.then(|| any!(self, lowered => any_tracer(Views::of(lowered), settings)))
     }
 
-    /// The most work that a ray of no view can take: see [`Lowered::worst_case`].
+    /// The most work that a ray can take: see [`Lowered::worst_case`].
     pub fn worst_case(&self, settings: &Settings) -> Work {
         any!(self, lowered => lowered.worst_case(settings))
-    }
-
-    /// The same for a ray of a view.
-    pub fn worst_case_in_view(&self, settings: &Settings) -> Work {
-        any!(self, lowered => lowered.worst_case_in_view(settings))
     }
 
     /// What a method borrows of it as tables: its stages have to have been built.
@@ -278,13 +284,13 @@ impl Prepared {
         any!(self, lowered => lowered.bytes(stages))
     }
 
-    /// The bytes of the view that its part in `stages` takes, by kind.
-    pub fn view_bytes(&self, stages: Stages) -> Bytes {
-        any!(self, lowered => lowered.view_bytes(stages))
+    /// The bytes that the view takes, by kind; none if no memory of one was taken.
+    pub fn view_bytes(&self) -> Bytes {
+        any!(self, lowered => lowered.view_bytes())
     }
 
-    /// The most bytes that a thread can need for the scan lines of a view with a method.
-    pub fn most_view_lane_bytes(&self, method: Which) -> LaneBytes {
+    /// The most bytes that a thread can need for the scan lines of a view with a method; `None` for one that needs no view.
+    pub fn most_view_lane_bytes(&self, method: Which) -> Option<LaneBytes> {
         any!(self, lowered => most_lane_bytes_of(method, lowered))
     }
 

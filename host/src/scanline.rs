@@ -216,13 +216,16 @@ pub trait Tracer<H = Found>: Send + Sync {
 pub struct MethodTracer<'m, M, P: Point> {
     views: Views<'m, P>,
     limits: Limits<P::Scalar>,
+    /// Whether rays leave something to the next.
+    coherence: bool,
     method: PhantomData<M>,
 }
 
 impl<'m, M: Method<P>, P: Point> MethodTracer<'m, M, P> {
-    /// The tracer of the method `M`, such as [`Newton`](crate::method::Newton), over `views` and under `limits`.
-    pub fn new(views: Views<'m, P>, limits: Limits<P::Scalar>) -> Self {
-        MethodTracer { views, limits, method: PhantomData }
+    /// The tracer of the method `M`, such as [`Newton`](crate::method::Newton), over `views` and under `limits`. Without
+    /// `coherence` a coherent method begins anew with every ray: what it then gains is owed to its order of search alone.
+    pub fn new(views: Views<'m, P>, limits: Limits<P::Scalar>, coherence: bool) -> Self {
+        MethodTracer { views, limits, coherence, method: PhantomData }
     }
 
     /// Slots of coherence memory that a lane needs.
@@ -333,7 +336,7 @@ const BLOCK: usize = 64;
 impl<M: Method<P>, P: Point> Lane<Told<M, P>> for MethodLane<'_, M, P> {
     fn trace(&mut self, rays: &[RayLine], continues: bool, outcomes: &mut Vec<Outcome<Told<M, P>>>, tally: &mut Tally) {
         if !continues {
-            self.begin_line();
+            begin_line(&mut self.line, &mut self.memory);
         }
         tally.rays += rays.len() as u64;
         for block in rays.chunks(BLOCK) {
@@ -354,11 +357,14 @@ impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
     /// Traces what is ready, into `found`; this is what is timed.
     fn trace_ready(&mut self, tally: &mut Tally) {
         self.found.clear();
-        let MethodTracer { views, limits, .. } = self.tracer;
+        let MethodTracer { views, limits, coherence, .. } = self.tracer;
         let of_nets = &views.at(Place::Nets);
         let begin = Instant::now();
         let mut counting = Counting::new(tally);
         self.found.extend(self.ready.iter().map(|ready| {
+            if !coherence {
+                begin_line(&mut self.line, &mut self.memory);
+            }
             let work = counting.next();
             ready.as_ref().map(|(place, origin, direction, interval)| {
                 let views = if *place == Place::File { views } else { of_nets };
@@ -370,15 +376,16 @@ impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
         counting.end();
         tally.seconds += begin.elapsed().as_secs_f64();
     }
+}
 
-    fn begin_line(&mut self) {
-        // The method allows numbers up to 2^32 - 2; before they run out, the memory is emptied and they start again.
-        if self.line >= u32::MAX - 2 {
-            self.memory.fill(Remembered::EMPTY);
-            self.line = 0;
-        }
-        self.line += 1;
+/// Goes on to the number of a new scan line.
+fn begin_line<S: Scalar>(line: &mut u32, memory: &mut [Remembered<S>]) {
+    // The method allows numbers up to 2^32 - 2; before they run out, the memory is emptied and they start again.
+    if *line >= u32::MAX - 2 {
+        memory.fill(Remembered::EMPTY);
+        *line = 0;
     }
+    *line += 1;
 }
 
 /// What became of a ray, in `f64` and with normals.

@@ -3,6 +3,7 @@
 use patchray::limits::Work;
 use patchray::story::Event;
 use patchray_host::explain::{Story, of_pixel};
+use patchray_host::lower::LowerError;
 use patchray_host::scanline::{Outcome, Tally, rays_of};
 use patchray_host::scene::camera::View;
 use patchray_host::scene::error::OnInvalid;
@@ -108,7 +109,7 @@ fn stories_are_of_the_same_rays_and_leave_nothing_out() {
     assert!(agree(&scene.model, &settings, &view.sampled(Sampling::Jittered), 20) > 100);
 }
 
-/// From so far away that the kernel has no view of it, rays are traced one by one.
+/// From so far away the kernel has no view of it, and the methods that need none have stories all the same.
 #[test]
 fn rays_of_no_view_have_stories_too() {
     let scene = common_scene().expect("the built-in scene is valid");
@@ -119,9 +120,11 @@ fn rays_of_no_view_have_stories_too() {
     let view = View { eye, forward, ..near };
     for method in [Method::Newton, Method::NewtonCoherent, Method::Clipping, Method::ClippingCoherent] {
         let settings = Settings { method, ..Settings::default() };
-        let viewed = Viewed::build(&scene.model, &settings, &view, Wishes::PRIMARY).expect("it is valid");
-        assert!(!viewed.has_view());
         assert!(agree(&scene.model, &settings, &view, 15) >= 5, "{method:?}");
+    }
+    for method in [Method::NewtonPredicted, Method::ClippingPredicted] {
+        let settings = Settings { method, ..Settings::default() };
+        assert!(matches!(of_pixel(&scene.model, &settings, &view, [20, 15]), Err(LowerError::NoView { .. })));
     }
 }
 

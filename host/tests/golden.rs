@@ -41,7 +41,6 @@ fn every_method_draws_the_recorded_picture() {
             let settings = Settings { method, precision, ..Settings::default() };
             let wishes = Wishes::of(&scene.appearance);
             let mut viewed = Viewed::build(&scene.model, &settings, &view, wishes).expect("the teapot is valid");
-            assert!(viewed.has_view());
             let (tracers, _) = viewed.tracers().expect("it was just made ready");
             let (appearance, shadows) = (&scene.appearance, &NO_SHADOWS);
             let drawing = Drawing {

@@ -122,8 +122,7 @@ fn compare(
     (truths, oracle): (&[Truth], &OracleStats),
     quiet: bool,
 ) -> Result<(Vec<Run>, Option<Picture>), Failure> {
-    // Methods are compared at their fastest.
-    let wishes = Wishes { patches: true, ..Wishes::of(appearance) };
+    let wishes = Wishes::of(appearance);
     let viewed = settings.iter().map(|settings| Viewed::build(model, settings, view, wishes));
     let mut viewed = viewed.collect::<Result<Vec<_>, _>>()?;
     let tracers = viewed.iter_mut().map(Viewed::tracers).collect::<Result<Vec<_>, _>>()?;

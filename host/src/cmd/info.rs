@@ -7,8 +7,8 @@
 //! `grid_density` (the ones in effect), and `memory`: for each precision `patches` and `preparation_scratch_bytes` (while the
 //! scene is built), and under `methods` for each method `baked_bytes` (of the tables that `patchray bake` writes),
 //! `arena_bytes` (lent for the scene), `arena_bytes_by_kind`, `coherence_bytes_per_thread`, `scratch_bytes_per_thread`, all for
-//! rays of any kind and not there for a method that needs those of a view; and `view`, with the same fields and
-//! `line_bytes_per_thread_at_most`, for the rays of one view: of a picture, `--stats` says how many bytes its scan lines take.
+//! rays of any kind and not there for a method that needs those of a view; which has instead, in `view`, the same fields and
+//! `line_bytes_per_thread_at_most`: of a picture, `--stats` says how many bytes its scan lines take.
 //! A precision that cannot hold the model has `refused`, the reason, instead. All bytes are sizes of slots times their number.
 
 use std::collections::BTreeMap;
@@ -302,14 +302,13 @@ impl Memory {
             let settings = Settings { method, ..*settings };
             let rays = (!method.needs_view())
                 .then(|| RaysMemory::of(prepared.bytes(Stages::of(method)), &prepared.tracer(&settings).lane_bytes()));
-            let stages = Stages::of_view(method);
-            let view = has_view.then(|| {
-                let lane = prepared.most_view_lane_bytes(method);
+            let stages = Stages::of(method);
+            let view = prepared.most_view_lane_bytes(method).filter(|_| has_view).map(|lane| {
                 let mut bytes = prepared.bytes(stages);
-                bytes.add_all(&prepared.view_bytes(stages));
+                bytes.add_all(&prepared.view_bytes());
                 ViewMemory { rays: RaysMemory::of(bytes, &lane), line_bytes_per_thread_at_most: lane.line }
             });
-            let baked_bytes = prepared.bytes(Stages::of(method)).total();
+            let baked_bytes = prepared.bytes(stages).total();
             (name(&method), MethodMemory { baked_bytes, rays, view })
         });
         let methods = methods.collect();

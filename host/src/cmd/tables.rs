@@ -123,10 +123,9 @@ fn measure(
         repetitions,
         step: &|| bar.inc(1),
     };
-    let viewed = subject.viewed()?;
     let Primary { runs: [numerical, clipping], outcomes, size: [surfaces, patches] } =
-        subject.primary(&viewed, asked.as_ref().map(|(truths, _)| truths.as_slice()))?;
-    let sampling = subject.samplings(&viewed)?;
+        subject.primary(asked.as_ref().map(|(truths, _)| truths.as_slice()))?;
+    let sampling = subject.samplings()?;
     let rays = subject.one_by_one(&outcomes)?;
     bar.finish_and_clear();
     let report = SceneReport {

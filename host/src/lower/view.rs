@@ -6,11 +6,13 @@ use patchray::ray::{Interval, RayError};
 use patchray::scalar::Scalar;
 use patchray::view::{Camera, Sight, View, ViewError, ViewMemory, ViewNeeds};
 
-use super::{LowerError, Lowered, Place, Stages};
+use super::{FromFile, LowerError, Lowered, Place, Stages};
 use crate::memory::{Bytes, Kind, Slots};
 use crate::method::Views;
 use crate::scene::camera;
+use crate::scene::model::Model;
 use crate::scene::sampling::ScanLine;
+use crate::settings::Settings;
 
 /// The memory of a view, lent to the kernel.
 #[derive(Clone, Debug)]
@@ -93,6 +95,31 @@ fn reason(error: ViewError) -> String {
     }
 }
 
+impl<P: FromFile> Lowered<P> {
+    /// Lowers `model`, builds the stages, and takes the memory of the picture's view if the method of `settings` needs one.
+    ///
+    /// # Errors
+    /// As [`Lowered::build`] and [`Lowered::take_view`]; and a picture that the method cannot trace: [`LowerError::NoView`].
+    pub fn for_picture(
+        model: &Model,
+        stages: Stages,
+        settings: &Settings,
+        picture: &camera::View,
+    ) -> Result<Self, LowerError> {
+        let (method, preparation) = (settings.method, settings.preparation());
+        if !method.needs_view() {
+            return Self::build(model, stages, &preparation);
+        }
+        // Before patches are made, which may take long.
+        if let Some(reason) = Self::build(model, Stages::NONE, &preparation)?.no_view(picture) {
+            return Err(LowerError::NoView { method: method.name(), reason });
+        }
+        let mut lowered = Self::build(model, stages, &preparation)?;
+        lowered.take_view(picture, preparation.arena_bytes)?;
+        Ok(lowered)
+    }
+}
+
 impl<P: Point> Lowered<P> {
     /// Why the kernel cannot trace all of the picture's rays as those of one view, if it cannot. Needs no patches.
     pub fn no_view(&self, view: &camera::View) -> Option<String> {
@@ -156,8 +183,8 @@ impl<P: Point> Lowered<P> {
         Ok((Views { scene, nets, patches, tree, grids }, seen))
     }
 
-    /// The slots of the view that its part in `stages` takes, by kind; none if none was taken.
-    pub fn view_bytes(&self, stages: Stages) -> Bytes {
+    /// The slots that the view takes, by kind; none if no memory of one was taken.
+    pub fn view_bytes(&self) -> Bytes {
         let ViewSlots { points, surfaces, patches, sights, runs, first_runs } = &self.view;
         let mut bytes = Bytes::default();
         if surfaces.is_empty() {
@@ -165,12 +192,10 @@ impl<P: Point> Lowered<P> {
         }
         bytes.add::<P>(Kind::ViewPoints, points.len());
         bytes.add::<Sight<P::Scalar>>(Kind::ViewSurfaces, surfaces.len());
-        if stages.has_patches() {
-            bytes.add::<Patch<P::Scalar>>(Kind::ViewPatches, patches.len());
-            bytes.add::<Sight<P::Scalar>>(Kind::ViewSights, sights.len());
-            bytes.add::<[P::Scalar; 2]>(Kind::ViewRuns, runs.len());
-            bytes.add::<u32>(Kind::ViewRunRanges, first_runs.len());
-        }
+        bytes.add::<Patch<P::Scalar>>(Kind::ViewPatches, patches.len());
+        bytes.add::<Sight<P::Scalar>>(Kind::ViewSights, sights.len());
+        bytes.add::<[P::Scalar; 2]>(Kind::ViewRuns, runs.len());
+        bytes.add::<u32>(Kind::ViewRunRanges, first_runs.len());
         bytes
     }
 }

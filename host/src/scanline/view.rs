@@ -7,11 +7,12 @@ use patchray::arena::Need;
 use patchray::bernstein::Basis;
 use patchray::limits::{Limit, Limits, Work};
 use patchray::line::{Line, LineMemory, LineNeeds, Window};
+use patchray::method::{Followed, Following};
 use patchray::point::Point;
 use patchray::ray::{Hit, Interval, RayError};
 use patchray::scalar::Scalar;
 use patchray::scene::Scene;
-use patchray::span::Span;
+use patchray::span::{Order, Span};
 use patchray::view::View;
 
 use super::{BLOCK, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};
@@ -25,23 +26,14 @@ use crate::scene::sampling::ScanLine;
 /// nothing: on the common view 64 to 1,024 take the same time to 3 %.
 const BUCKETS: usize = 256;
 
-/// How the scan lines of a view are traced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LineOptions {
-    /// Whether lines are of patches, which the view then has to have; else of surfaces.
-    pub patches: bool,
-    /// Whether rays leave something to the next. Without, a coherent method begins anew with every ray: what it then
-    /// gains is owed to its order of search alone.
-    pub coherence: bool,
-}
-
 /// The tracer of a method for the scan lines of one picture. Rays that are none of them, such as those that mirrors
 /// send on, are left to another tracer.
 pub struct ViewTracer<'m, M, P: Point> {
     scene: Scene<'m, P>,
     view: View<'m, P>,
     limits: Limits<P::Scalar>,
-    options: LineOptions,
+    /// Whether rays leave something to the next.
+    coherence: bool,
     needs: LineNeeds,
     others: Option<Box<dyn Tracer + 'm>>,
     method: PhantomData<M>,
@@ -49,17 +41,17 @@ pub struct ViewTracer<'m, M, P: Point> {
 
 impl<'m, M: ViewMethod<P>, P: Point> ViewTracer<'m, M, P> {
     /// The tracer of the method `M` for the scan lines of `picture`, of which `view` is the kernel's view. It asks the
-    /// kernel for the memory of each scan line, to lend the most. `others` traces all other rays; without it they are
-    /// given up.
+    /// kernel for the memory of each scan line, to lend the most. Without `coherence` it begins anew with every ray: what it
+    /// then gains is owed to its order of search alone. `others` traces all other rays; without it they are given up.
     pub fn new(
         (scene, view): (Scene<'m, P>, View<'m, P>),
         picture: &camera::View,
         limits: Limits<P::Scalar>,
-        options: LineOptions,
+        coherence: bool,
         others: Option<Box<dyn Tracer + 'm>>,
     ) -> Self {
         let mut tracer =
-            ViewTracer { scene, view, limits, options, needs: LineNeeds::default(), others, method: PhantomData };
+            ViewTracer { scene, view, limits, coherence, needs: LineNeeds::default(), others, method: PhantomData };
         for line in 0..picture.scan_lines() {
             let nothing = LineMemory { spans: &mut [], active: &mut [], buckets: &mut [] };
             if let Err(needs) = tracer.line(&picture.scan_line(line), nothing) {
@@ -81,11 +73,7 @@ impl<'m, M: ViewMethod<P>, P: Point> ViewTracer<'m, M, P> {
         let (first, last) = (x(line.samples.first()), x(line.samples.last()));
         let [a, b] = line.sy.map(P::Scalar::from_f64);
         let window = Window { x: [first, last], y: if a < b { [a, b] } else { [b, a] } };
-        if self.options.patches {
-            Line::of_patches(&self.view, window, M::ORDER, memory)
-        } else {
-            Line::of_surfaces(&self.view, window, memory)
-        }
+        Line::of_patches(&self.view, window, Order::Depth, memory)
     }
 }
 
@@ -94,16 +82,15 @@ fn lane_bytes<M: ViewMethod<P>, P: Point>(surfaces: usize, needs: &LineNeeds) ->
     let LineNeeds { spans, active, buckets } = needs;
     let numbers = active.needed + buckets.needed.max(BUCKETS);
     LaneBytes {
-        coherence: (surfaces * size_of::<M::Slot>()) as u64,
+        coherence: (surfaces * size_of::<Followed<P::Scalar>>()) as u64,
         line: (spans.needed * size_of::<Span<P::Scalar>>() + numbers * size_of::<u32>()) as u64,
         scratch: size_of::<M::Scratch>() as u64,
     }
 }
 
-/// The most that a lane of the method `M` can take, wherever a view looks from: with all surfaces or patches in one
-/// line, of which there are `spans`.
-pub fn most_lane_bytes<M: ViewMethod<P>, P: Point>(surfaces: usize, spans: usize) -> LaneBytes {
-    let need = Need { needed: spans, given: 0 };
+/// The most that a lane of the method `M` can take, wherever a view looks from: with all patches in one line.
+pub fn most_lane_bytes<M: ViewMethod<P>, P: Point>(surfaces: usize, patches: usize) -> LaneBytes {
+    let need = Need { needed: patches, given: 0 };
     lane_bytes::<M, P>(surfaces, &LineNeeds { spans: need, active: need, buckets: Need::default() })
 }
 
@@ -113,7 +100,7 @@ impl<M: ViewMethod<P>, P: Point> Tracer for ViewTracer<'_, M, P> {
             tracer: self,
             scratch: M::Scratch::default(),
             basis: Basis::new(),
-            slots: vec![M::EMPTY; self.scene.len()],
+            slots: vec![Followed::EMPTY; self.scene.len()],
             number: 0,
             spans: vec![Span::EMPTY; self.needs.spans.needed],
             active: vec![0; self.needs.active.needed],
@@ -144,7 +131,7 @@ struct ViewLane<'t, M: ViewMethod<P>, P: Point> {
     tracer: &'t ViewTracer<'t, M, P>,
     scratch: M::Scratch,
     basis: Basis<P::Scalar, ORDER>,
-    slots: Vec<M::Slot>,
+    slots: Vec<Followed<P::Scalar>>,
     /// The last number that was given to a scan line.
     number: u32,
     spans: Vec<Span<P::Scalar>>,
@@ -170,7 +157,7 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
     }
 
     fn trace_line(&mut self, line: &ScanLine, rays: &[RayLine], outcomes: &mut Vec<Outcome>, tally: &mut Tally) {
-        let step = u32::from(!self.tracer.options.coherence);
+        let step = u32::from(!self.tracer.coherence);
         let mut number = self.begin_line(line, step);
         let ViewLane { tracer, scratch, basis, slots, spans, active, buckets, ready, found, .. } = self;
         let ViewTracer { view, limits, scene, .. } = tracer;
@@ -179,7 +166,8 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
         let of_line = tracer.line(line, LineMemory { spans, active, buckets });
         tally.seconds += begin.elapsed().as_secs_f64();
         let mut of_line = of_line.ok();
-        let mut memory = M::memory(slots);
+        // At the beginning of a line no surface was the last one.
+        let mut memory = Following { slots, last: u32::MAX };
         let ahead = Interval::ahead();
         for block in line.samples.chunks(BLOCK) {
             ready.clear();
@@ -225,7 +213,7 @@ impl<M: ViewMethod<P>, P: Point> ViewLane<'_, M, P> {
         let last = (line.samples.len() as u32).saturating_mul(step).saturating_add(1);
         // The method allows numbers up to 2^32 - 2; before they run out, the memory is emptied and they start again.
         if self.number >= u32::MAX.saturating_sub(last).saturating_sub(1) {
-            self.slots.fill(M::EMPTY);
+            self.slots.fill(Followed::EMPTY);
             self.number = 0;
         }
         let number = self.number + 1;

@@ -201,7 +201,7 @@ fn trace(case: &Case, rays: &[RayLine], settings: &Settings) -> Result<Answers, 
             Ok(Answers { outcomes, steps, beyond, most_steps: most_steps(&worst) })
         }
         Shot::Picture(view) => {
-            let mut viewed = Viewed::build(&case.model, settings, view, Wishes { patches: true, ..Wishes::PRIMARY })?;
+            let mut viewed = Viewed::build(&case.model, settings, view, Wishes::PRIMARY)?;
             let worst = viewed.worst_case();
             let (tracer, _) = viewed.tracer()?;
             let mut lane = tracer.lane();

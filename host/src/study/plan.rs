@@ -31,7 +31,7 @@ pub enum Knob {
     NewtonSteps,
     /// The limit `clip-steps`.
     ClipSteps,
-    /// [`Settings::grid_density`]. Only rays of no view walk grids, so that these cells trace rays one by one.
+    /// [`Settings::grid_density`].
     GridDensity,
 }
 
@@ -78,7 +78,7 @@ impl Knob {
             (Knob::NewtonStarts, _) => &[1.0, 2.0],
             (Knob::NewtonSteps, _) => &[4.0, 8.0, 16.0],
             (Knob::ClipSteps, _) => &[10.0, 20.0, 40.0, 80.0],
-            (Knob::GridDensity, _) => &[0.25, 0.75, 1.5, 3.0, 6.0, 12.0],
+            (Knob::GridDensity, _) => &[0.25, 0.75, 1.5, 6.0, 12.0],
         }
     }
 
@@ -137,11 +137,6 @@ impl Cell {
             Knob::GridDensity => settings.grid_density = value,
         }
         settings
-    }
-
-    /// Whether its rays are traced one by one, and not as those of one view.
-    pub fn one_by_one(&self) -> bool {
-        self.knob == Knob::GridDensity
     }
 }
 
@@ -202,7 +197,7 @@ mod tests {
     fn names_are_unique_and_stay() {
         let cells = plan(None, None);
         let ids: BTreeSet<String> = cells.iter().map(Cell::id).collect();
-        assert_eq!((ids.len(), cells.len()), (cells.len(), 340));
+        assert_eq!((ids.len(), cells.len()), (cells.len(), 336));
         for id in [
             "clipping.f64.default",
             "newton.f32.tolerance.4e-7",
@@ -235,10 +230,7 @@ mod tests {
                 fields
             });
             let moved = own.iter().zip(&moved).filter(|(own, moved)| own != moved).count();
-            // A grid's density also has the default among its values: its cells differ from the others in how they trace.
-            let least = usize::from(!matches!(cell.knob, Knob::Default | Knob::GridDensity));
-            let most = usize::from(cell.knob != Knob::Default);
-            assert!((least..=most).contains(&moved), "{}: {moved}", cell.id());
+            assert_eq!(moved, usize::from(cell.knob != Knob::Default), "{}", cell.id());
         }
     }
 

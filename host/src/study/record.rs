@@ -25,8 +25,6 @@ pub struct Head {
     pub knob: Knob,
     /// The knob's value; `null` for a knob without.
     pub value: Option<f64>,
-    /// Whether rays were traced by what those of one view share, and not one by one.
-    pub view: bool,
     /// All settings.
     pub settings: serde_json::Value,
 }
@@ -297,7 +295,6 @@ pub(crate) mod tests {
                 precision: cell.precision,
                 knob: cell.knob,
                 value: cell.value,
-                view: !cell.one_by_one(),
                 settings: serde_json::to_value(settings).expect("plain"),
             },
             machine: Machine::this(),

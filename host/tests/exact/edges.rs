@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::aim::{Aimed, Targets, aim, targets};
 use crate::residual::{distance, most};
-use crate::tools::{IN_VIEW, METHODS, PRECISIONS, rays, settings, trace_view};
+use crate::tools::{METHODS, OF_PICTURES, PRECISIONS, rays, settings, trace_view};
 
 /// The sides of a plate's rows and columns, smallest in the middle.
 const SIDES: [f64; 13] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
@@ -201,7 +201,7 @@ fn no_pixel_is_lost_between_two_neighbours() {
                         at.abs() < 5.9
                     })
                 };
-                for method in IN_VIEW {
+                for method in OF_PICTURES {
                     let outcomes = trace_view(&model, &view, method, precision);
                     for (outcome, ray) in outcomes.iter().zip(&lines).filter(|(_, ray)| within(ray)) {
                         let hit = matches!(outcome, Outcome::Hit(Found { t, .. }) if (t - 1.0).abs() < 0.01);

@@ -21,7 +21,7 @@ use patchray_host::stress::judge::Judge;
 use patchray_host::stress::truth::{self, in_precision, rays_of, size};
 use rayon::prelude::*;
 
-use crate::tools::{IN_VIEW, METHODS, PRECISIONS, index, rays, told, trace, trace_view};
+use crate::tools::{METHODS, OF_PICTURES, PRECISIONS, index, rays, told, trace, trace_view};
 
 /// Rays of a surface.
 const RAYS: usize = 40;
@@ -227,7 +227,7 @@ fn no_ray_is_lost_on_a_rational_surface() {
             let lines = rays_of(&case);
             let judge = Judge::by(&case, &lines, truths(&case, &lines, precision), precision);
             let blur = blur(&case.model.surfaces[0], precision);
-            let methods: &[_] = if let Shot::Picture(_) = case.shot { &IN_VIEW } else { &METHODS };
+            let methods: &[_] = if let Shot::Picture(_) = case.shot { &OF_PICTURES } else { &METHODS };
             let (mut counts, mut wrong) = (BTreeMap::new(), Vec::new());
             for &method in methods {
                 let outcomes = match &case.shot {

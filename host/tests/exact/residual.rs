@@ -22,7 +22,7 @@ use patchray_host::stress::case::{Case, Draw, Shot, ray};
 use patchray_host::stress::truth::{in_precision, rays_of, size};
 use rayon::prelude::*;
 
-use crate::tools::{IN_VIEW, METHODS, PRECISIONS, rays, told, trace, trace_view};
+use crate::tools::{METHODS, OF_PICTURES, PRECISIONS, rays, told, trace, trace_view};
 
 type Number = DoubleDouble;
 
@@ -365,7 +365,7 @@ fn a_part_far_from_0_keeps_its_digits() {
         };
         let case = Case { model: model.clone(), shot: Shot::Picture(view), exact: None };
         let lines = rays_of(&case);
-        for method in IN_VIEW {
+        for method in OF_PICTURES {
             let outcomes = trace_view(&model, &view, method, precision);
             let checked =
                 lines.iter().zip(&outcomes).filter(|(ray, outcome)| check(method.name(), precision, ray, outcome));

@@ -15,8 +15,8 @@ use patchray_host::viewed::{Viewed, Wishes};
 pub(crate) const METHODS: [Method; 4] =
     [Method::Clipping, Method::Newton, Method::ClippingCoherent, Method::NewtonCoherent];
 
-/// All, for the rays of a view.
-pub(crate) const IN_VIEW: [Method; 6] = [
+/// All, for the rays of a picture.
+pub(crate) const OF_PICTURES: [Method; 6] = [
     Method::Clipping,
     Method::Newton,
     Method::ClippingCoherent,

@@ -56,8 +56,6 @@ pub(super) fn all(points: &[Point]) -> Vec<Section> {
 
 /// Error over time. The line of a method goes through its tolerances; the points beside it are its other settings.
 fn work_precision(points: &[Point], precision: Precision) -> Drawing {
-    // Rays one by one are another task than those of a view.
-    let shown: Vec<&Point> = points.iter().filter(|point| point.record.head.knob != Knob::GridDensity).collect();
     let mark = |point: &&Point| Mark {
         at: [point.ns, point.measured.errors.t.most],
         tip: point.tip(),
@@ -65,7 +63,7 @@ fn work_precision(points: &[Point], precision: Precision) -> Drawing {
     };
     let mut series = Vec::new();
     for &method in Method::value_variants() {
-        let own = || shown.iter().copied().filter(move |point| point.is(method, precision));
+        let own = || points.iter().filter(move |point| point.is(method, precision));
         let (mut line, others): (Vec<&Point>, Vec<&Point>) =
             own().partition(|point| matches!(point.record.head.knob, Knob::Default | Knob::Tolerance));
         line.sort_by(|a, b| {
@@ -88,8 +86,8 @@ fn work_precision(points: &[Point], precision: Precision) -> Drawing {
         let [low, high] = [f64::min, f64::max].map(|pick| all.iter().copied().reduce(pick));
         low.zip(high).map(|(low, high)| [low, high])
     };
-    let times = range(&mut shown.iter().map(|point| point.ns));
-    let errors = range(&mut shown.iter().filter(|point| !point.failed()).map(|point| point.measured.errors.t.most));
+    let times = range(&mut points.iter().map(|point| point.ns));
+    let errors = range(&mut points.iter().filter(|point| !point.failed()).map(|point| point.measured.errors.t.most));
     let plot = Plot {
         title: format!("Error over time, {}", precision.name()),
         x: Axis { range: times, ..axis("time, ns per ray", Scale::Log) },
@@ -159,10 +157,9 @@ fn sweep(points: &[Point], knob: Knob) -> Vec<Drawing> {
         for &precision in Precision::value_variants().iter().rev() {
             for &method in Method::value_variants() {
                 let own = points.iter().filter(|point| point.is(method, precision));
-                // The default is a value too, unless it stands for no bound, or for another way to trace.
+                // The default is a value too, unless it stands for no bound.
                 let own = own.filter(|point| {
-                    let default = point.record.head.knob == Knob::Default && !limit && knob != Knob::GridDensity;
-                    point.record.head.knob == knob || default
+                    point.record.head.knob == knob || (point.record.head.knob == Knob::Default && !limit)
                 });
                 let mut own: Vec<(f64, &Point)> =
                     own.filter_map(|point| Some((point.value_of(knob)?, point))).collect();

@@ -64,8 +64,6 @@ pub struct CellData<'r> {
     pub knob: Knob,
     /// The knob's value; `null` for a knob without.
     pub value: Option<f64>,
-    /// Whether rays were traced by what those of one view share, and not one by one.
-    pub view: bool,
     /// Whether more rays are lost than [`Data::failed_above`].
     pub failed: bool,
     /// Nanoseconds per ray, at the pace that is common to all cells.
@@ -180,7 +178,6 @@ impl<'r> CellData<'r> {
             precision: head.precision,
             knob: head.knob,
             value: head.value,
-            view: head.view,
             failed: point.failed(),
             ns_per_ray: ns,
             spread: measured.time.spread,

@@ -119,16 +119,10 @@ fn figure(drawing: &Drawing) -> String {
 /// What there is to know before reading a knob's diagrams.
 fn note_of(knob: Knob) -> Option<&'static str> {
     match knob {
-        Knob::Default => Some(
-            "Down and to the left is better. What lies on the upper border failed. Rays one by one, of which only the grid's \
-             density is measured, are not in it.",
-        ),
+        Knob::Default => Some("Down and to the left is better. What lies on the upper border failed."),
         Knob::ClipThreshold => Some(
             "The paper bisects an interval if a clip removes less than 20 % of it. Solid lines are f64, dashed ones f32.",
         ),
-        Knob::GridDensity => {
-            Some("Only rays that are traced one by one walk grids: these times are of another task than those above.")
-        }
         Knob::NewtonSteps | Knob::ClipSteps => Some("A ray that runs out of a limit is given up, and counts as lost."),
         _ => None,
     }
@@ -144,7 +138,7 @@ pub(super) fn answer(points: &[Point]) -> String {
             points.iter().filter(move |point| {
                 let counts = &point.measured.counts;
                 let sound = counts.lost() == 0 && counts.undecided == 0;
-                point.record.head.view && sound && point.measured.errors.t.most <= error
+                sound && point.measured.errors.t.most <= error
             })
         };
         let fastest = fit().min_by(|a, b| a.ns.total_cmp(&b.ns))?;

@@ -13,8 +13,8 @@ use crate::viewed::{Viewed, Wishes};
 /// What became of the picture's rays, and the sums without the seconds.
 fn traced(model: &Model, settings: &Settings, picture: &View, wishes: Wishes) -> (Vec<Outcome>, Tally) {
     let mut viewed = Viewed::build(model, settings, picture, wishes).expect("there is memory");
-    assert_eq!(viewed.has_view(), wishes.view);
-    let (tracer, _) = viewed.tracer().expect("it was just made ready");
+    let (tracer, used) = viewed.tracer().expect("it was just made ready");
+    assert_eq!(used.lane.line > 0, settings.method.needs_view());
     let (mut lane, mut outcomes, mut tally) = (tracer.lane(), Vec::new(), Tally::default());
     for line in 0..picture.scan_lines() {
         lane.trace_line(&picture.scan_line(line), &row(picture, line), &mut outcomes, &mut tally);
@@ -36,12 +36,12 @@ fn a_view_and_single_rays_hit_alike() {
     let model = teapot();
     for sampling in [Sampling::One, Sampling::Jittered] {
         let picture = picture(48).sampled(sampling);
-        for &method in Method::value_variants().iter().filter(|method| !method.needs_view()) {
+        for method in [Method::NewtonPredicted, Method::ClippingPredicted] {
             for precision in [Precision::F32, Precision::F64] {
                 let settings = Settings { method, precision, flatness: 0.005, ..Settings::default() };
                 let (in_view, tally) = traced(&model, &settings, &picture, Wishes::PRIMARY);
-                let one_by_one = Wishes { view: false, ..Wishes::PRIMARY };
-                let (alone, _) = traced(&model, &settings, &picture, one_by_one);
+                let one_by_one = Settings { method: method.of_any_rays(), ..settings };
+                let (alone, _) = traced(&model, &one_by_one, &picture, Wishes::PRIMARY);
                 assert_eq!(tally.rays, in_view.len() as u64);
                 let mut others = 0;
                 for (a, b) in in_view.iter().zip(&alone) {
@@ -62,12 +62,12 @@ fn a_view_and_single_rays_hit_alike() {
 }
 
 #[test]
-fn patches_and_coherence_change_work_and_no_hits() {
+fn coherence_changes_work_and_no_hits() {
     let (model, picture) = (teapot(), picture(40));
     for &method in Method::value_variants() {
         let settings = Settings { method, flatness: 0.005, ..Settings::default() };
         let (with, tally) = traced(&model, &settings, &picture, Wishes::PRIMARY);
-        let forgetful = Wishes { coherence: false, patches: true, ..Wishes::PRIMARY };
+        let forgetful = Wishes { coherence: false, ..Wishes::PRIMARY };
         let (without, other) = traced(&model, &settings, &picture, forgetful);
         assert_eq!(other.count("verified") + other.count("decided_by_list") + other.count("start_failed"), 0);
         assert_eq!(tally.count("verified") > 0, method.is_coherent(), "{method:?}");
@@ -83,7 +83,6 @@ fn line_numbers_start_again_before_they_run_out() {
     use crate::lower::{Lowered, Preparation, Stages};
     use crate::method::in_view::NewtonPredicted;
     use crate::scanline::Lane;
-    use crate::scanline::view::LineOptions;
     use patchray::bernstein::Basis;
     use patchray::limits::Limits;
     use patchray::method::Followed;
@@ -94,8 +93,7 @@ fn line_numbers_start_again_before_they_run_out() {
     let mut lowered = Lowered::<Plain<f64>>::build(&teapot(), Stages::PATCHES, &Preparation::default()).expect("built");
     lowered.take_view(&picture, u64::MAX).expect("there is memory");
     let (views, seen) = lowered.seen(&picture).expect("it was just taken");
-    let options = LineOptions { patches: true, coherence: false };
-    let tracer = ViewTracer::<NewtonPredicted, _>::new((views.scene, seen), &picture, Limits::default(), options, None);
+    let tracer = ViewTracer::<NewtonPredicted, _>::new((views.scene, seen), &picture, Limits::default(), false, None);
     let mut lane = ViewLane {
         tracer: &tracer,
         scratch: Default::default(),
@@ -134,9 +132,8 @@ fn what_is_no_view_is_traced_ray_by_ray_or_refused() {
             let settings = Settings { method, flatness: 0.01, ..Settings::default() };
             match Viewed::build(&model, &settings, &picture, Wishes::PRIMARY) {
                 Ok(mut viewed) => {
-                    assert!(!viewed.has_view() && !method.needs_view());
-                    let (tracer, used) = viewed.tracer().expect("it was just made ready");
-                    assert_eq!(used.lane.line, 0);
+                    assert!(!method.needs_view());
+                    let (tracer, _) = viewed.tracer().expect("it was just made ready");
                     let (mut outcomes, mut tally) = (Vec::new(), Tally::default());
                     tracer.lane().trace_line(&picture.scan_line(12), &row(&picture, 12), &mut outcomes, &mut tally);
                     assert!(tally.hits > 0 && tally.invalid == 0, "{tally:?}");
