@@ -11,8 +11,7 @@ macro_rules! functions_of_views {
     (
         $s:ident, $p:ty,
         $(#[$build_doc:meta])* view_build: $build:ident,
-        without memory { $($(#[$bare_doc:meta])* $bare:ident: $bare_name:ident,)* }
-        with memory { $($(#[$kept_doc:meta])* $kept:ident($memory:ident): $kept_name:ident,)* }
+        $($(#[$line_doc:meta])* $line:ident: $line_name:ident,)*
     ) => {
         $(#[$build_doc])*
         #[unsafe(no_mangle)]
@@ -28,34 +27,13 @@ macro_rules! functions_of_views {
         }
 
         $(
-            $(#[$bare_doc])*
+            $(#[$line_doc])*
             #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn $bare_name(
+            pub unsafe extern "C" fn $line_name(
                 view: *const patchray_view<$s>,
                 line: *const patchray_line<$s>,
                 line_memory: *mut patchray_line_memory<$s>,
-                limits: *const patchray_limits<$s>,
-                scratch: *mut u64,
-                scratch_words: usize,
-                hits: *mut patchray_hit<$s>,
-                codes: *mut i32,
-                works: *mut patchray_work,
-            ) -> i32 {
-                let given =
-                    view::OfLine { view, line, memory: line_memory, limits, scratch: (scratch, scratch_words), hits, codes, works };
-                // SAFETY: the caller's.
-                code(unsafe { view::$bare::<$p>(given) })
-            }
-        )*
-
-        $(
-            $(#[$kept_doc])*
-            #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn $kept_name(
-                view: *const patchray_view<$s>,
-                line: *const patchray_line<$s>,
-                line_memory: *mut patchray_line_memory<$s>,
-                memory: *mut $memory<$s>,
+                memory: *mut patchray_followed<$s>,
                 memory_len: usize,
                 limits: *const patchray_limits<$s>,
                 scratch: *mut u64,
@@ -67,7 +45,7 @@ macro_rules! functions_of_views {
                 let given =
                     view::OfLine { view, line, memory: line_memory, limits, scratch: (scratch, scratch_words), hits, codes, works };
                 // SAFETY: the caller's.
-                code(unsafe { view::$kept::<$p>(given, (memory, memory_len)) })
+                code(unsafe { view::$line::<$p>(given, (memory, memory_len)) })
             }
         )*
     };
@@ -75,93 +53,45 @@ macro_rules! functions_of_views {
 
 functions_of_views! {
     f32, Plain<f32>,
-    /// Turns a scene, and its patches if they are not NULL, to a camera, for tracing scan lines of its image. Without
-    /// patches only clipping can trace it. Counts as for scene_build; sights, runs and first_runs only with patches. The view
-    /// goes on reading the surfaces, offsets and references of the scene and the first of the patches; their points and patches it
-    /// has turned. Codes of rays are of the camera's three vectors.
+    /// Turns a scene and its patches to a camera, for tracing scan lines of its image. Counts as for scene_build. The view goes on
+    /// reading the surfaces, offsets and references of the scene and the first of the patches; their points and patches it has
+    /// turned. Codes of rays are of the camera's three vectors.
     view_build: patchray_view_build_f32,
-    without memory {
-        /// Traces a scan line by clipping: of each ray the hit, in codes what patchray_clipping_closest would return, and in
-        /// works, unless it is NULL, what was done; each has as many slots as the line has rays. Returns PATCHRAY_OK, or a
-        /// negative code, after which nothing was written but counts. scratch: CLIP words.
-        clipping_line: patchray_clipping_line_f32,
-        /// The same by the original numerical method. scratch: NEWTON words, as for all newton_..._line.
-        newton_line: patchray_newton_line_f32,
-    }
-    with memory {
-        /// The same by clipping with scan-line coherence; memory as for newton_coherent_closest.
-        clipping_coherent_line(patchray_remembered): patchray_clipping_coherent_line_f32,
-        /// The same by the improved numerical method; memory as for newton_coherent_closest.
-        newton_coherent_line(patchray_remembered): patchray_newton_coherent_line_f32,
-        /// The same by clipping around where the hit is predicted; memory has a slot per surface.
-        clipping_predicted_line(patchray_followed): patchray_clipping_predicted_line_f32,
-        /// The same by Newton's method from where the hit is predicted, the fastest of all; memory has a slot per surface.
-        newton_predicted_line(patchray_followed): patchray_newton_predicted_line_f32,
-    }
+    /// Traces a scan line by clipping around where the hit is predicted: of each ray the hit, in codes what
+    /// patchray_clipping_closest would return, and in works, unless it is NULL, what was done; each has as many slots as the line
+    /// has rays. memory has a slot per surface. Returns PATCHRAY_OK, or a negative code, after which nothing was written but counts.
+    /// scratch: CLIP words.
+    clipping_predicted_line: patchray_clipping_predicted_line_f32,
+    /// The same by Newton's method from where the hit is predicted, the fastest of all. scratch: NEWTON words.
+    newton_predicted_line: patchray_newton_predicted_line_f32,
 }
 
 functions_of_views! {
     f32, Weighted<f32>,
     /// As patchray_view_build_f32, of control points with weights.
     view_build: patchray_view_build_f32_weighted,
-    without memory {
-        /// As patchray_clipping_line_f32, of control points with weights.
-        clipping_line: patchray_clipping_line_f32_weighted,
-        /// As patchray_newton_line_f32, of control points with weights.
-        newton_line: patchray_newton_line_f32_weighted,
-    }
-    with memory {
-        /// As patchray_clipping_coherent_line_f32, of control points with weights.
-        clipping_coherent_line(patchray_remembered): patchray_clipping_coherent_line_f32_weighted,
-        /// As patchray_newton_coherent_line_f32, of control points with weights.
-        newton_coherent_line(patchray_remembered): patchray_newton_coherent_line_f32_weighted,
-        /// As patchray_clipping_predicted_line_f32, of control points with weights.
-        clipping_predicted_line(patchray_followed): patchray_clipping_predicted_line_f32_weighted,
-        /// As patchray_newton_predicted_line_f32, of control points with weights.
-        newton_predicted_line(patchray_followed): patchray_newton_predicted_line_f32_weighted,
-    }
+    /// As patchray_clipping_predicted_line_f32, of control points with weights.
+    clipping_predicted_line: patchray_clipping_predicted_line_f32_weighted,
+    /// As patchray_newton_predicted_line_f32, of control points with weights.
+    newton_predicted_line: patchray_newton_predicted_line_f32_weighted,
 }
 
 functions_of_views! {
     f64, Plain<f64>,
     /// As patchray_view_build_f32, in double precision.
     view_build: patchray_view_build_f64,
-    without memory {
-        /// As patchray_clipping_line_f32, in double precision.
-        clipping_line: patchray_clipping_line_f64,
-        /// As patchray_newton_line_f32, in double precision.
-        newton_line: patchray_newton_line_f64,
-    }
-    with memory {
-        /// As patchray_clipping_coherent_line_f32, in double precision.
-        clipping_coherent_line(patchray_remembered): patchray_clipping_coherent_line_f64,
-        /// As patchray_newton_coherent_line_f32, in double precision.
-        newton_coherent_line(patchray_remembered): patchray_newton_coherent_line_f64,
-        /// As patchray_clipping_predicted_line_f32, in double precision.
-        clipping_predicted_line(patchray_followed): patchray_clipping_predicted_line_f64,
-        /// As patchray_newton_predicted_line_f32, in double precision.
-        newton_predicted_line(patchray_followed): patchray_newton_predicted_line_f64,
-    }
+    /// As patchray_clipping_predicted_line_f32, in double precision.
+    clipping_predicted_line: patchray_clipping_predicted_line_f64,
+    /// As patchray_newton_predicted_line_f32, in double precision.
+    newton_predicted_line: patchray_newton_predicted_line_f64,
 }
 
 functions_of_views! {
     f64, Weighted<f64>,
     /// As patchray_view_build_f32, in double precision, of control points with weights.
     view_build: patchray_view_build_f64_weighted,
-    without memory {
-        /// As patchray_clipping_line_f32, in double precision, of control points with weights.
-        clipping_line: patchray_clipping_line_f64_weighted,
-        /// As patchray_newton_line_f32, in double precision, of control points with weights.
-        newton_line: patchray_newton_line_f64_weighted,
-    }
-    with memory {
-        /// As patchray_clipping_coherent_line_f32, in double precision, of control points with weights.
-        clipping_coherent_line(patchray_remembered): patchray_clipping_coherent_line_f64_weighted,
-        /// As patchray_newton_coherent_line_f32, in double precision, of control points with weights.
-        newton_coherent_line(patchray_remembered): patchray_newton_coherent_line_f64_weighted,
-        /// As patchray_clipping_predicted_line_f32, in double precision, of control points with weights.
-        clipping_predicted_line(patchray_followed): patchray_clipping_predicted_line_f64_weighted,
-        /// As patchray_newton_predicted_line_f32, in double precision, of control points with weights.
-        newton_predicted_line(patchray_followed): patchray_newton_predicted_line_f64_weighted,
-    }
+    /// As patchray_clipping_predicted_line_f32, in double precision, of control points with weights.
+    clipping_predicted_line: patchray_clipping_predicted_line_f64_weighted,
+    /// As patchray_newton_predicted_line_f32, in double precision, of control points with weights.
+    newton_predicted_line: patchray_newton_predicted_line_f64_weighted,
 }

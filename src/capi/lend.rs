@@ -7,7 +7,7 @@
 use super::status::{Code, PATCHRAY_COUNT, PATCHRAY_MEMORY, PATCHRAY_MISALIGNED, PATCHRAY_NULL, PATCHRAY_OVERLAP};
 use heapless::Vec;
 
-/// The most pieces of memory that one call names: a scan line by coherent clipping has 23.
+/// The most pieces of memory that one call names: a scan line has 23.
 const MOST: usize = 24;
 
 #[derive(Clone, Copy)]

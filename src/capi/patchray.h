@@ -10,10 +10,10 @@
 //   patchray_grids_build    patches to grids                     newton_coherent, clipping_coherent
 //   patchray_..._closest    a ray to a hit, a miss, or neither   clipping, clipping_coherent, newton, newton_coherent
 //
-// And for pictures, whose rays start at one eye: no trees and no grids are needed, and the predicted methods are the fastest.
+// And for pictures, whose rays start at one eye, by the methods that are the fastest: no trees and no grids are needed.
 //
-//   patchray_view_build     a scene, its patches and a camera    all methods (patches: all but clipping)
-//   patchray_..._line       the rays of a scan line, each to     the four methods, clipping_predicted, newton_predicted
+//   patchray_view_build     a scene, its patches and a camera    clipping_predicted, newton_predicted
+//   patchray_..._line       the rays of a scan line, each to     the same
 //                           a hit, a miss, or neither
 //
 // Memory. Who calls lends all of it, as addresses and counts. Preparations say how much they need if they are asked with
@@ -256,8 +256,8 @@
 // `patchray_limits.acceptance`: the paper's rule, likely right.
 #define PATCHRAY_ACCEPTANCE_PAPER 0
 
-// `patchray_limits.acceptance`: only what is proved, slower. newton_closest, newton_any and newton_line take either for the
-// same: they prove nothing.
+// `patchray_limits.acceptance`: only what is proved, slower. newton_closest and newton_any take either for the same: they
+// prove nothing.
 #define PATCHRAY_ACCEPTANCE_PROVED 1
 
 // `patchray_hit.incidence`: the ray passes through the surface.
@@ -904,7 +904,7 @@ typedef struct {
   patchray_sight_f32 *surfaces;
   // How many.
   size_t surfaces_len;
-  // Patches; none of a view without patches, as of the three that follow.
+  // Patches.
   patchray_patch_f32 *patches;
   // How many.
   size_t patches_len;
@@ -936,7 +936,7 @@ typedef struct {
   patchray_lens_f32 header;
   // The scene, its control points turned.
   patchray_scene_f32 scene;
-  // The patches, turned; none of a view without patches.
+  // The patches, turned.
   patchray_patches_f32 patches;
   // What is seen of the surfaces.
   const patchray_sight_f32 *surfaces;
@@ -974,7 +974,7 @@ typedef struct {
   uint32_t number;
 } patchray_line_f32;
 
-// Where in a scan line a surface or a patch can be seen: a slot of memory that is lent for a line.
+// Where in a scan line a patch can be seen: a slot of memory that is lent for a line.
 typedef struct {
   // The least and the largest x, its least depth, and its surface's.
   float numbers[4];
@@ -983,8 +983,7 @@ typedef struct {
 } patchray_span_f32;
 
 // Memory that is lent for tracing a scan line, of one thread. Begin with zeros; from then on it is the library's, and may be lent
-// for any other line. On PATCHRAY_MEMORY the counts say how many slots are needed: of no line more than the view has patches, or
-// surfaces if it has no patches.
+// for any other line. On PATCHRAY_MEMORY the counts say how many slots are needed: of no line more than the view has patches.
 typedef struct {
   // What can be seen in the line.
   patchray_span_f32 *spans;
@@ -1038,7 +1037,7 @@ typedef struct {
   patchray_sight_f64 *surfaces;
   // How many.
   size_t surfaces_len;
-  // Patches; none of a view without patches, as of the three that follow.
+  // Patches.
   patchray_patch_f64 *patches;
   // How many.
   size_t patches_len;
@@ -1070,7 +1069,7 @@ typedef struct {
   patchray_lens_f64 header;
   // The scene, its control points turned.
   patchray_scene_f64 scene;
-  // The patches, turned; none of a view without patches.
+  // The patches, turned.
   patchray_patches_f64 patches;
   // What is seen of the surfaces.
   const patchray_sight_f64 *surfaces;
@@ -1108,7 +1107,7 @@ typedef struct {
   uint32_t number;
 } patchray_line_f64;
 
-// Where in a scan line a surface or a patch can be seen: a slot of memory that is lent for a line.
+// Where in a scan line a patch can be seen: a slot of memory that is lent for a line.
 typedef struct {
   // The least and the largest x, its least depth, and its surface's.
   double numbers[4];
@@ -1117,8 +1116,7 @@ typedef struct {
 } patchray_span_f64;
 
 // Memory that is lent for tracing a scan line, of one thread. Begin with zeros; from then on it is the library's, and may be lent
-// for any other line. On PATCHRAY_MEMORY the counts say how many slots are needed: of no line more than the view has patches, or
-// surfaces if it has no patches.
+// for any other line. On PATCHRAY_MEMORY the counts say how many slots are needed: of no line more than the view has patches.
 typedef struct {
   // What can be seen in the line.
   patchray_span_f64 *spans;
@@ -1590,67 +1588,19 @@ int32_t patchray_options_default_f64(patchray_options_f64 *options);
 // As patchray_limits_default_f32, in double precision.
 int32_t patchray_limits_default_f64(patchray_limits_f64 *limits);
 
-// Turns a scene, and its patches if they are not NULL, to a camera, for tracing scan lines of its image. Without
-// patches only clipping can trace it. Counts as for scene_build; sights, runs and first_runs only with patches. The view
-// goes on reading the surfaces, offsets and references of the scene and the first of the patches; their points and patches it
-// has turned. Codes of rays are of the camera's three vectors.
+// Turns a scene and its patches to a camera, for tracing scan lines of its image. Counts as for scene_build. The view goes on
+// reading the surfaces, offsets and references of the scene and the first of the patches; their points and patches it has
+// turned. Codes of rays are of the camera's three vectors.
 int32_t patchray_view_build_f32(const patchray_scene_f32 *scene,
                                 const patchray_patches_f32 *patches,
                                 const patchray_camera_f32 *camera,
                                 patchray_view_memory_f32 *memory,
                                 patchray_view_f32 *view);
 
-// Traces a scan line by clipping: of each ray the hit, in codes what patchray_clipping_closest would return, and in
-// works, unless it is NULL, what was done; each has as many slots as the line has rays. Returns PATCHRAY_OK, or a
-// negative code, after which nothing was written but counts. scratch: CLIP words.
-int32_t patchray_clipping_line_f32(const patchray_view_f32 *view,
-                                   const patchray_line_f32 *line,
-                                   patchray_line_memory_f32 *line_memory,
-                                   const patchray_limits_f32 *limits,
-                                   uint64_t *scratch,
-                                   size_t scratch_words,
-                                   patchray_hit_f32 *hits,
-                                   int32_t *codes,
-                                   patchray_work *works);
-
-// The same by the original numerical method. scratch: NEWTON words, as for all newton_..._line.
-int32_t patchray_newton_line_f32(const patchray_view_f32 *view,
-                                 const patchray_line_f32 *line,
-                                 patchray_line_memory_f32 *line_memory,
-                                 const patchray_limits_f32 *limits,
-                                 uint64_t *scratch,
-                                 size_t scratch_words,
-                                 patchray_hit_f32 *hits,
-                                 int32_t *codes,
-                                 patchray_work *works);
-
-// The same by clipping with scan-line coherence; memory as for newton_coherent_closest.
-int32_t patchray_clipping_coherent_line_f32(const patchray_view_f32 *view,
-                                            const patchray_line_f32 *line,
-                                            patchray_line_memory_f32 *line_memory,
-                                            patchray_remembered_f32 *memory,
-                                            size_t memory_len,
-                                            const patchray_limits_f32 *limits,
-                                            uint64_t *scratch,
-                                            size_t scratch_words,
-                                            patchray_hit_f32 *hits,
-                                            int32_t *codes,
-                                            patchray_work *works);
-
-// The same by the improved numerical method; memory as for newton_coherent_closest.
-int32_t patchray_newton_coherent_line_f32(const patchray_view_f32 *view,
-                                          const patchray_line_f32 *line,
-                                          patchray_line_memory_f32 *line_memory,
-                                          patchray_remembered_f32 *memory,
-                                          size_t memory_len,
-                                          const patchray_limits_f32 *limits,
-                                          uint64_t *scratch,
-                                          size_t scratch_words,
-                                          patchray_hit_f32 *hits,
-                                          int32_t *codes,
-                                          patchray_work *works);
-
-// The same by clipping around where the hit is predicted; memory has a slot per surface.
+// Traces a scan line by clipping around where the hit is predicted: of each ray the hit, in codes what
+// patchray_clipping_closest would return, and in works, unless it is NULL, what was done; each has as many slots as the line
+// has rays. memory has a slot per surface. Returns PATCHRAY_OK, or a negative code, after which nothing was written but counts.
+// scratch: CLIP words.
 int32_t patchray_clipping_predicted_line_f32(const patchray_view_f32 *view,
                                              const patchray_line_f32 *line,
                                              patchray_line_memory_f32 *line_memory,
@@ -1663,7 +1613,7 @@ int32_t patchray_clipping_predicted_line_f32(const patchray_view_f32 *view,
                                              int32_t *codes,
                                              patchray_work *works);
 
-// The same by Newton's method from where the hit is predicted, the fastest of all; memory has a slot per surface.
+// The same by Newton's method from where the hit is predicted, the fastest of all. scratch: NEWTON words.
 int32_t patchray_newton_predicted_line_f32(const patchray_view_f32 *view,
                                            const patchray_line_f32 *line,
                                            patchray_line_memory_f32 *line_memory,
@@ -1682,54 +1632,6 @@ int32_t patchray_view_build_f32_weighted(const patchray_scene_f32 *scene,
                                          const patchray_camera_f32 *camera,
                                          patchray_view_memory_f32 *memory,
                                          patchray_view_f32 *view);
-
-// As patchray_clipping_line_f32, of control points with weights.
-int32_t patchray_clipping_line_f32_weighted(const patchray_view_f32 *view,
-                                            const patchray_line_f32 *line,
-                                            patchray_line_memory_f32 *line_memory,
-                                            const patchray_limits_f32 *limits,
-                                            uint64_t *scratch,
-                                            size_t scratch_words,
-                                            patchray_hit_f32 *hits,
-                                            int32_t *codes,
-                                            patchray_work *works);
-
-// As patchray_newton_line_f32, of control points with weights.
-int32_t patchray_newton_line_f32_weighted(const patchray_view_f32 *view,
-                                          const patchray_line_f32 *line,
-                                          patchray_line_memory_f32 *line_memory,
-                                          const patchray_limits_f32 *limits,
-                                          uint64_t *scratch,
-                                          size_t scratch_words,
-                                          patchray_hit_f32 *hits,
-                                          int32_t *codes,
-                                          patchray_work *works);
-
-// As patchray_clipping_coherent_line_f32, of control points with weights.
-int32_t patchray_clipping_coherent_line_f32_weighted(const patchray_view_f32 *view,
-                                                     const patchray_line_f32 *line,
-                                                     patchray_line_memory_f32 *line_memory,
-                                                     patchray_remembered_f32 *memory,
-                                                     size_t memory_len,
-                                                     const patchray_limits_f32 *limits,
-                                                     uint64_t *scratch,
-                                                     size_t scratch_words,
-                                                     patchray_hit_f32 *hits,
-                                                     int32_t *codes,
-                                                     patchray_work *works);
-
-// As patchray_newton_coherent_line_f32, of control points with weights.
-int32_t patchray_newton_coherent_line_f32_weighted(const patchray_view_f32 *view,
-                                                   const patchray_line_f32 *line,
-                                                   patchray_line_memory_f32 *line_memory,
-                                                   patchray_remembered_f32 *memory,
-                                                   size_t memory_len,
-                                                   const patchray_limits_f32 *limits,
-                                                   uint64_t *scratch,
-                                                   size_t scratch_words,
-                                                   patchray_hit_f32 *hits,
-                                                   int32_t *codes,
-                                                   patchray_work *works);
 
 // As patchray_clipping_predicted_line_f32, of control points with weights.
 int32_t patchray_clipping_predicted_line_f32_weighted(const patchray_view_f32 *view,
@@ -1764,54 +1666,6 @@ int32_t patchray_view_build_f64(const patchray_scene_f64 *scene,
                                 patchray_view_memory_f64 *memory,
                                 patchray_view_f64 *view);
 
-// As patchray_clipping_line_f32, in double precision.
-int32_t patchray_clipping_line_f64(const patchray_view_f64 *view,
-                                   const patchray_line_f64 *line,
-                                   patchray_line_memory_f64 *line_memory,
-                                   const patchray_limits_f64 *limits,
-                                   uint64_t *scratch,
-                                   size_t scratch_words,
-                                   patchray_hit_f64 *hits,
-                                   int32_t *codes,
-                                   patchray_work *works);
-
-// As patchray_newton_line_f32, in double precision.
-int32_t patchray_newton_line_f64(const patchray_view_f64 *view,
-                                 const patchray_line_f64 *line,
-                                 patchray_line_memory_f64 *line_memory,
-                                 const patchray_limits_f64 *limits,
-                                 uint64_t *scratch,
-                                 size_t scratch_words,
-                                 patchray_hit_f64 *hits,
-                                 int32_t *codes,
-                                 patchray_work *works);
-
-// As patchray_clipping_coherent_line_f32, in double precision.
-int32_t patchray_clipping_coherent_line_f64(const patchray_view_f64 *view,
-                                            const patchray_line_f64 *line,
-                                            patchray_line_memory_f64 *line_memory,
-                                            patchray_remembered_f64 *memory,
-                                            size_t memory_len,
-                                            const patchray_limits_f64 *limits,
-                                            uint64_t *scratch,
-                                            size_t scratch_words,
-                                            patchray_hit_f64 *hits,
-                                            int32_t *codes,
-                                            patchray_work *works);
-
-// As patchray_newton_coherent_line_f32, in double precision.
-int32_t patchray_newton_coherent_line_f64(const patchray_view_f64 *view,
-                                          const patchray_line_f64 *line,
-                                          patchray_line_memory_f64 *line_memory,
-                                          patchray_remembered_f64 *memory,
-                                          size_t memory_len,
-                                          const patchray_limits_f64 *limits,
-                                          uint64_t *scratch,
-                                          size_t scratch_words,
-                                          patchray_hit_f64 *hits,
-                                          int32_t *codes,
-                                          patchray_work *works);
-
 // As patchray_clipping_predicted_line_f32, in double precision.
 int32_t patchray_clipping_predicted_line_f64(const patchray_view_f64 *view,
                                              const patchray_line_f64 *line,
@@ -1844,54 +1698,6 @@ int32_t patchray_view_build_f64_weighted(const patchray_scene_f64 *scene,
                                          const patchray_camera_f64 *camera,
                                          patchray_view_memory_f64 *memory,
                                          patchray_view_f64 *view);
-
-// As patchray_clipping_line_f32, in double precision, of control points with weights.
-int32_t patchray_clipping_line_f64_weighted(const patchray_view_f64 *view,
-                                            const patchray_line_f64 *line,
-                                            patchray_line_memory_f64 *line_memory,
-                                            const patchray_limits_f64 *limits,
-                                            uint64_t *scratch,
-                                            size_t scratch_words,
-                                            patchray_hit_f64 *hits,
-                                            int32_t *codes,
-                                            patchray_work *works);
-
-// As patchray_newton_line_f32, in double precision, of control points with weights.
-int32_t patchray_newton_line_f64_weighted(const patchray_view_f64 *view,
-                                          const patchray_line_f64 *line,
-                                          patchray_line_memory_f64 *line_memory,
-                                          const patchray_limits_f64 *limits,
-                                          uint64_t *scratch,
-                                          size_t scratch_words,
-                                          patchray_hit_f64 *hits,
-                                          int32_t *codes,
-                                          patchray_work *works);
-
-// As patchray_clipping_coherent_line_f32, in double precision, of control points with weights.
-int32_t patchray_clipping_coherent_line_f64_weighted(const patchray_view_f64 *view,
-                                                     const patchray_line_f64 *line,
-                                                     patchray_line_memory_f64 *line_memory,
-                                                     patchray_remembered_f64 *memory,
-                                                     size_t memory_len,
-                                                     const patchray_limits_f64 *limits,
-                                                     uint64_t *scratch,
-                                                     size_t scratch_words,
-                                                     patchray_hit_f64 *hits,
-                                                     int32_t *codes,
-                                                     patchray_work *works);
-
-// As patchray_newton_coherent_line_f32, in double precision, of control points with weights.
-int32_t patchray_newton_coherent_line_f64_weighted(const patchray_view_f64 *view,
-                                                   const patchray_line_f64 *line,
-                                                   patchray_line_memory_f64 *line_memory,
-                                                   patchray_remembered_f64 *memory,
-                                                   size_t memory_len,
-                                                   const patchray_limits_f64 *limits,
-                                                   uint64_t *scratch,
-                                                   size_t scratch_words,
-                                                   patchray_hit_f64 *hits,
-                                                   int32_t *codes,
-                                                   patchray_work *works);
 
 // As patchray_clipping_predicted_line_f32, in double precision, of control points with weights.
 int32_t patchray_clipping_predicted_line_f64_weighted(const patchray_view_f64 *view,

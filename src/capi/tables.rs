@@ -130,15 +130,13 @@ pub(super) unsafe fn patches_of<'c, S: Scalar>(
     if of == surfaces { Ok(patches) } else { Err(PATCHRAY_TABLES) }
 }
 
-/// A view, and whether it has patches.
-///
 /// # Safety
 /// As for [`scene`].
 #[inline(always)]
 pub(super) unsafe fn view<'c, P: Point>(
     lending: &mut Lending,
     view: *const patchray_view<P::Scalar>,
-) -> Result<(View<'c, P>, bool), Code> {
+) -> Result<View<'c, P>, Code> {
     // SAFETY: the caller's.
     let view = unsafe { lending.read(view) }?;
     expect::<P::Scalar>(view.layout, Table::View, P::RATIONAL)?;
@@ -157,7 +155,7 @@ pub(super) unsafe fn view<'c, P: Point>(
     let runs = unsafe { lending.slots(view.runs, view.runs_len) }?;
     // SAFETY: likewise.
     let first_runs = unsafe { lending.slots(view.first_runs, view.first_runs_len) }?;
-    Ok((View::new(header, scene, patches, surfaces, sights, runs, first_runs), view.patches.first_len > 0))
+    Ok(View::new(header, scene, patches, surfaces, sights, runs, first_runs))
 }
 
 /// A view's header in the words of the C interface.

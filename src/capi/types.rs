@@ -28,8 +28,8 @@ pub const PATCHRAY_MAX_DEGREE: u32 = 15;
 
 /// `patchray_limits.acceptance`: the paper's rule, likely right.
 pub const PATCHRAY_ACCEPTANCE_PAPER: u32 = 0;
-/// `patchray_limits.acceptance`: only what is proved, slower. newton_closest, newton_any and newton_line take either for the
-/// same: they prove nothing.
+/// `patchray_limits.acceptance`: only what is proved, slower. newton_closest and newton_any take either for the same: they
+/// prove nothing.
 pub const PATCHRAY_ACCEPTANCE_PROVED: u32 = 1;
 
 /// `patchray_hit.incidence`: the ray passes through the surface.
@@ -328,7 +328,7 @@ pub struct patchray_view_memory<S> {
     pub surfaces: *mut patchray_sight<S>,
     /// How many.
     pub surfaces_len: usize,
-    /// Patches; none of a view without patches, as of the three that follow.
+    /// Patches.
     pub patches: *mut patchray_patch<S>,
     /// How many.
     pub patches_len: usize,
@@ -356,7 +356,7 @@ pub struct patchray_view<S> {
     pub header: patchray_lens<S>,
     /// The scene, its control points turned.
     pub scene: patchray_scene<S>,
-    /// The patches, turned; none of a view without patches.
+    /// The patches, turned.
     pub patches: patchray_patches<S>,
     /// What is seen of the surfaces.
     pub surfaces: *const patchray_sight<S>,
@@ -376,7 +376,7 @@ pub struct patchray_view<S> {
     pub first_runs_len: usize,
 }
 
-/// Where in a scan line a surface or a patch can be seen: a slot of memory that is lent for a line.
+/// Where in a scan line a patch can be seen: a slot of memory that is lent for a line.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct patchray_span<S> {
@@ -387,8 +387,7 @@ pub struct patchray_span<S> {
 }
 
 /// Memory that is lent for tracing a scan line, of one thread. Begin with zeros; from then on it is the library's, and may be lent
-/// for any other line. On PATCHRAY_MEMORY the counts say how many slots are needed: of no line more than the view has patches, or
-/// surfaces if it has no patches.
+/// for any other line. On PATCHRAY_MEMORY the counts say how many slots are needed: of no line more than the view has patches.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct patchray_line_memory<S> {

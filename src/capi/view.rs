@@ -1,7 +1,7 @@
 //! The rays of a view: what they share is prepared once, and each call traces a scan line of them.
 //!
-//! A line to a call, not a ray: what is known of a line's surfaces and patches lives no longer than the call, so that a caller
-//! has less to hold, and memory is made sure of once for all of a line's rays.
+//! A line to a call, not a ray: what is known of a line's patches lives no longer than the call, so that a caller has less to
+//! hold, and memory is made sure of once for all of a line's rays.
 
 use super::lend::{Lending, Room};
 use super::scratch;
@@ -12,9 +12,7 @@ use super::types::*;
 use crate::layout::Table;
 use crate::limits::{Limits, Work};
 use crate::line::{Line, LineMemory, LineNeeds, Window};
-use crate::method::{
-    Following, Remembered, clipping, clipping_coherent, clipping_predicted, newton, newton_coherent, newton_predicted,
-};
+use crate::method::{Following, clipping_predicted, newton_predicted};
 use crate::point::Point;
 use crate::ray::{Interval, RayError};
 use crate::scalar::Scalar;
@@ -48,15 +46,12 @@ pub(super) unsafe fn view_build<P: Point>(
     // SAFETY: the caller's.
     let scene = unsafe { tables::scene_in::<P>(&mut lending, &table) }?;
     // SAFETY: the caller's.
-    let of_patches = unsafe { lending.read_if_any(patches) }?;
-    let patches = match &of_patches {
-        // SAFETY: the caller's.
-        Some(patches) => Some(unsafe { tables::patches_in(&mut lending, patches) }?.0),
-        None => None,
-    };
+    let of_patches = unsafe { lending.read(patches) }?;
+    // SAFETY: the caller's.
+    let (patches, _) = unsafe { tables::patches_in(&mut lending, &of_patches) }?;
     let camera = Camera { eye, forward, right, up };
     // Before anything is written.
-    View::check(&scene, patches.as_ref(), &camera).map_err(of_view)?;
+    View::check(&scene, Some(&patches), &camera).map_err(of_view)?;
     // SAFETY: the caller's.
     let room = unsafe {
         ViewMemory {
@@ -68,7 +63,7 @@ pub(super) unsafe fn view_build<P: Point>(
             first_runs: first_runs.open(),
         }
     };
-    let (lens, built) = match View::build(&scene, patches.as_ref(), &camera, room) {
+    let (lens, built) = match View::build(&scene, Some(&patches), &camera, room) {
         Ok(view) => (view.lens(), Some(view.header())),
         Err(ViewError::Memory(needs)) => {
             let needs = [needs.points, needs.surfaces, needs.patches, needs.sights, needs.runs, needs.first_runs];
@@ -84,19 +79,13 @@ pub(super) unsafe fn view_build<P: Point>(
     // SAFETY: the caller's.
     unsafe { memory.set(counted) };
     let header = view_header_in_c(&built.ok_or(PATCHRAY_MEMORY)?);
-    let none = || {
-        let layout = layout_of::<P::Scalar>(Table::Patches, false);
-        patchray_patches { layout, patches: core::ptr::null(), patches_len: 0, first: core::ptr::null(), first_len: 0 }
-    };
-    let patches =
-        of_patches.map_or_else(none, |table| patchray_patches { patches: lent.patches, patches_len, ..table });
     // SAFETY: the caller's.
     unsafe {
         out.set(patchray_view {
             layout: layout_of::<P::Scalar>(Table::View, P::RATIONAL),
             header,
             scene: patchray_scene { points: lent.points, points_len, ..table },
-            patches,
+            patches: patchray_patches { patches: lent.patches, patches_len, ..of_patches },
             surfaces: lent.surfaces,
             surfaces_len,
             sights: lent.sights,
@@ -122,22 +111,20 @@ pub(super) struct OfLine<S> {
     pub(super) works: *mut patchray_work,
 }
 
-/// Traces a scan line: `memory` makes sure of the method's coherence memory, of so many surfaces, `room` makes its scratch of
-/// words, and `trace` answers a ray. The line is of patches in `order`; or of surfaces, where the view has no patches and the
-/// method needs none.
+/// Traces a scan line: `room` makes the method's scratch of words, and `trace` answers a ray. The slots are coherence memory.
 ///
 /// # Safety
 /// As for [`view_build`].
 #[inline(always)]
-pub(super) unsafe fn line<P: Point, M, R>(
+unsafe fn line<P: Point, R>(
     given: OfLine<P::Scalar>,
-    (order, needs_patches): (Order, bool),
-    memory: impl FnOnce(&mut Lending, usize) -> Result<M, Code>,
+    (slots, count): (*mut patchray_followed<P::Scalar>, usize),
     room: impl FnOnce(Room<u64>) -> Result<R, Code>,
     mut trace: impl FnMut(
         &View<'_, P>,
         &mut Line<'_, P::Scalar>,
-        (&mut M, u32),
+        &mut Following<'_, P::Scalar>,
+        u32,
         &ViewRay<P::Scalar>,
         &Limits<P::Scalar>,
         &mut R,
@@ -160,8 +147,11 @@ pub(super) unsafe fn line<P: Point, M, R>(
     let limits = unsafe { lending.read_if_any(given.limits) }?;
     let limits = limits.map_or(Ok(Limits::default()), |limits| limits.checked())?;
     // SAFETY: the caller's.
-    let (view, has_patches) = unsafe { tables::view::<P>(&mut lending, given.view) }?;
-    let mut memory = memory(&mut lending, view.surfaces().len())?;
+    let view = unsafe { tables::view::<P>(&mut lending, given.view) }?;
+    // SAFETY: the caller's.
+    let slots = unsafe { lending.slot_each(slots, count, view.surfaces().len()) }?;
+    // At the beginning of a line no surface was the last one.
+    let memory = &mut Following { slots, last: u32::MAX };
     // Set once by the caller: to clear it for each line would cost more than many a line's rays.
     // SAFETY: the caller's.
     let lent_slots = unsafe {
@@ -171,21 +161,13 @@ pub(super) unsafe fn line<P: Point, M, R>(
             buckets: lending.memory(lent.buckets, lent.buckets_len)?,
         }
     };
-    if needs_patches && !has_patches {
-        return Err(PATCHRAY_TABLES);
-    }
     let interval = Interval::new(asked.t_min, asked.t_max).ok_or(PATCHRAY_RAY_INTERVAL)?;
     let window = Window { x: asked.x, y: asked.y };
     let has_extent = window.x[0] <= window.x[1] && window.y[0] <= window.y[1];
     if !(has_extent && asked.places_len.is_multiple_of(2) && tables::is_number_of_line(asked.number)) {
         return Err(PATCHRAY_OPTION);
     }
-    let built = if has_patches {
-        Line::of_patches(&view, window, order, lent_slots)
-    } else {
-        Line::of_surfaces(&view, window, lent_slots)
-    };
-    let mut line = match built {
+    let mut line = match Line::of_patches(&view, window, Order::Depth, lent_slots) {
         Ok(line) => line,
         Err(LineNeeds { spans, active, buckets }) => {
             let [spans_len, active_len, buckets_len] = [spans, active, buckets].map(|need| need.needed);
@@ -202,9 +184,7 @@ pub(super) unsafe fn line<P: Point, M, R>(
     for ((place, hit), code) in places.iter().zip(hits).zip(codes) {
         let mut work = Work::default();
         (*hit, *code) = match view.ray(*place, &interval) {
-            Ok(ray) => {
-                code_of(trace(&view, &mut line, (&mut memory, asked.number), &ray, &limits, &mut scratch, &mut work))
-            }
+            Ok(ray) => code_of(trace(&view, &mut line, memory, asked.number, &ray, &limits, &mut scratch, &mut work)),
             Err(error) => (None.into(), of_place(place, error)),
         };
         if let Some(place) = works.next() {
@@ -223,96 +203,12 @@ fn of_place<S: Scalar>(place: &[S; 2], error: RayError) -> Code {
 /// # Safety
 /// As for [`view_build`].
 #[inline(always)]
-pub(super) unsafe fn clipping_line<P: Point>(given: OfLine<P::Scalar>) -> Result<Code, Code> {
-    // SAFETY: the caller's.
-    unsafe {
-        line::<P, _, _>(
-            given,
-            (Order::Surfaces, false),
-            |_, _| Ok(()),
-            |words| scratch::clip::<P>(words),
-            |view, line, _, ray, limits, room, work| clipping::closest_in_view(view, line, ray, limits, room, work),
-        )
-    }
-}
-
-/// # Safety
-/// As for [`view_build`].
-#[inline(always)]
-pub(super) unsafe fn clipping_coherent_line<P: Point>(
-    given: OfLine<P::Scalar>,
-    (slots, count): (*mut patchray_remembered<P::Scalar>, usize),
-) -> Result<Code, Code> {
-    // SAFETY: the caller's.
-    unsafe {
-        line::<P, &mut [Remembered<P::Scalar>], _>(
-            given,
-            (Order::Surfaces, true),
-            |lending, surfaces| lending.slot_each(slots, count, surfaces),
-            |words| scratch::clip::<P>(words),
-            |view, line, (memory, number), ray, limits, room, work| {
-                clipping_coherent::closest_in_view(view, line, memory, number, ray, limits, room, work)
-            },
-        )
-    }
-}
-
-/// # Safety
-/// As for [`view_build`].
-#[inline(always)]
 pub(super) unsafe fn clipping_predicted_line<P: Point>(
     given: OfLine<P::Scalar>,
-    (slots, count): (*mut patchray_followed<P::Scalar>, usize),
+    slots: (*mut patchray_followed<P::Scalar>, usize),
 ) -> Result<Code, Code> {
     // SAFETY: the caller's.
-    unsafe {
-        line::<P, Following<'_, P::Scalar>, _>(
-            given,
-            (Order::Depth, true),
-            |lending, surfaces| Ok(Following { slots: lending.slot_each(slots, count, surfaces)?, last: u32::MAX }),
-            |words| scratch::clip::<P>(words),
-            |view, line, (memory, number), ray, limits, room, work| {
-                clipping_predicted::closest_in_view(view, line, memory, number, ray, limits, room, work)
-            },
-        )
-    }
-}
-
-/// # Safety
-/// As for [`view_build`].
-#[inline(always)]
-pub(super) unsafe fn newton_line<P: Point>(given: OfLine<P::Scalar>) -> Result<Code, Code> {
-    // SAFETY: the caller's.
-    unsafe {
-        line::<P, _, _>(
-            given,
-            (Order::Surfaces, true),
-            |_, _| Ok(()),
-            |words| scratch::newton::<P>(words),
-            |view, line, _, ray, limits, scratch, work| newton::closest_in_view(view, line, ray, limits, scratch, work),
-        )
-    }
-}
-
-/// # Safety
-/// As for [`view_build`].
-#[inline(always)]
-pub(super) unsafe fn newton_coherent_line<P: Point>(
-    given: OfLine<P::Scalar>,
-    (slots, count): (*mut patchray_remembered<P::Scalar>, usize),
-) -> Result<Code, Code> {
-    // SAFETY: the caller's.
-    unsafe {
-        line::<P, &mut [Remembered<P::Scalar>], _>(
-            given,
-            (Order::Surfaces, true),
-            |lending, surfaces| lending.slot_each(slots, count, surfaces),
-            |words| scratch::newton::<P>(words),
-            |view, line, (memory, number), ray, limits, scratch, work| {
-                newton_coherent::closest_in_view(view, line, memory, number, ray, limits, scratch, work)
-            },
-        )
-    }
+    unsafe { line::<P, _>(given, slots, |words| scratch::clip::<P>(words), clipping_predicted::closest_in_view) }
 }
 
 /// # Safety
@@ -320,18 +216,8 @@ pub(super) unsafe fn newton_coherent_line<P: Point>(
 #[inline(always)]
 pub(super) unsafe fn newton_predicted_line<P: Point>(
     given: OfLine<P::Scalar>,
-    (slots, count): (*mut patchray_followed<P::Scalar>, usize),
+    slots: (*mut patchray_followed<P::Scalar>, usize),
 ) -> Result<Code, Code> {
     // SAFETY: the caller's.
-    unsafe {
-        line::<P, Following<'_, P::Scalar>, _>(
-            given,
-            (Order::Depth, true),
-            |lending, surfaces| Ok(Following { slots: lending.slot_each(slots, count, surfaces)?, last: u32::MAX }),
-            |words| scratch::newton::<P>(words),
-            |view, line, (memory, number), ray, limits, scratch, work| {
-                newton_predicted::closest_in_view(view, line, memory, number, ray, limits, scratch, work)
-            },
-        )
-    }
+    unsafe { line::<P, _>(given, slots, |words| scratch::newton::<P>(words), newton_predicted::closest_in_view) }
 }

@@ -10,8 +10,8 @@ pub struct Arguments<S> {
     pub view: *const patchray_view<S>,
     pub line: *const patchray_line<S>,
     pub line_memory: *mut patchray_line_memory<S>,
-    /// Of coherence, of whichever kind.
-    pub memory: *mut u64,
+    /// Of coherence.
+    pub memory: *mut patchray_followed<S>,
     pub memory_len: usize,
     pub limits: *const patchray_limits<S>,
     pub scratch: *mut u64,
@@ -32,12 +32,12 @@ pub trait Views: InC {
         *mut patchray_view_memory<Self::Scalar>,
         *mut patchray_view<Self::Scalar>,
     ) -> i32;
-    /// Without coherence, coherent, predicted: each by clipping, then by Newton's method.
-    const LINES: [OfLine<Self::Scalar>; 6];
+    /// By clipping, then by Newton's method.
+    const LINES: [OfLine<Self::Scalar>; 2];
 }
 
 macro_rules! views {
-    ($point:ty, $view:ident, $($bare:ident)*; $($kept:ident)*) => {
+    ($point:ty, $view:ident, $($line:ident)*) => {
         impl Views for $point {
             const VIEW: unsafe extern "C" fn(
                 *const patchray_scene<Self::Scalar>,
@@ -46,40 +46,27 @@ macro_rules! views {
                 *mut patchray_view_memory<Self::Scalar>,
                 *mut patchray_view<Self::Scalar>,
             ) -> i32 = $view;
-            const LINES: [OfLine<Self::Scalar>; 6] = [
-                $(|a| unsafe {
-                    $bare(a.view, a.line, a.line_memory, a.limits, a.scratch, a.words, a.hits, a.codes, a.works)
-                },)*
-                $(|a| unsafe {
-                    $kept(
-                        a.view,
-                        a.line,
-                        a.line_memory,
-                        a.memory.cast(),
-                        a.memory_len,
-                        a.limits,
-                        a.scratch,
-                        a.words,
-                        a.hits,
-                        a.codes,
-                        a.works,
-                    )
-                },)*
-            ];
+            const LINES: [OfLine<Self::Scalar>; 2] = [$(|a| unsafe {
+                $line(
+                    a.view,
+                    a.line,
+                    a.line_memory,
+                    a.memory,
+                    a.memory_len,
+                    a.limits,
+                    a.scratch,
+                    a.words,
+                    a.hits,
+                    a.codes,
+                    a.works,
+                )
+            },)*];
         }
     };
 }
-views!(Plain<f32>, patchray_view_build_f32, patchray_clipping_line_f32 patchray_newton_line_f32;
-    patchray_clipping_coherent_line_f32 patchray_newton_coherent_line_f32 patchray_clipping_predicted_line_f32
-    patchray_newton_predicted_line_f32);
-views!(Weighted<f32>, patchray_view_build_f32_weighted, patchray_clipping_line_f32_weighted
-    patchray_newton_line_f32_weighted; patchray_clipping_coherent_line_f32_weighted
-    patchray_newton_coherent_line_f32_weighted patchray_clipping_predicted_line_f32_weighted
+views!(Plain<f32>, patchray_view_build_f32, patchray_clipping_predicted_line_f32 patchray_newton_predicted_line_f32);
+views!(Weighted<f32>, patchray_view_build_f32_weighted, patchray_clipping_predicted_line_f32_weighted
     patchray_newton_predicted_line_f32_weighted);
-views!(Plain<f64>, patchray_view_build_f64, patchray_clipping_line_f64 patchray_newton_line_f64;
-    patchray_clipping_coherent_line_f64 patchray_newton_coherent_line_f64 patchray_clipping_predicted_line_f64
-    patchray_newton_predicted_line_f64);
-views!(Weighted<f64>, patchray_view_build_f64_weighted, patchray_clipping_line_f64_weighted
-    patchray_newton_line_f64_weighted; patchray_clipping_coherent_line_f64_weighted
-    patchray_newton_coherent_line_f64_weighted patchray_clipping_predicted_line_f64_weighted
+views!(Plain<f64>, patchray_view_build_f64, patchray_clipping_predicted_line_f64 patchray_newton_predicted_line_f64);
+views!(Weighted<f64>, patchray_view_build_f64_weighted, patchray_clipping_predicted_line_f64_weighted
     patchray_newton_predicted_line_f64_weighted);

@@ -1,21 +1,13 @@
-// How methods.c traces the same rays as scan lines of a view, in one precision. Included after prepare.h.
+// How methods.c traces the same rays as scan lines of a view, by the methods for these, in one precision. Included after prepare.h.
 
-// A view of the teapot, and memory for its lines and for coherence of either kind.
+// A view of the teapot, and memory for its lines and for coherence.
 typedef struct {
     NAME(patchray_view) view;
     NAME(patchray_line_memory) of_lines;
-    NAME(patchray_remembered) * remembered;
     NAME(patchray_followed) * followed;
 } NAME(seen);
 
-enum NAME(line_method) {
-    NAME(CLIPPING_LINE),
-    NAME(NEWTON_LINE),
-    NAME(CLIPPING_COHERENT_LINE),
-    NAME(NEWTON_COHERENT_LINE),
-    NAME(CLIPPING_PREDICTED_LINE),
-    NAME(NEWTON_PREDICTED_LINE)
-};
+enum NAME(line_method) { NAME(CLIPPING_PREDICTED_LINE), NAME(NEWTON_PREDICTED_LINE) };
 
 static bool NAME(look)(const NAME(prepared) * all, NAME(seen) * seen)
 {
@@ -41,9 +33,8 @@ static bool NAME(look)(const NAME(prepared) * all, NAME(seen) * seen)
     seen->of_lines.buckets = (uint32_t *)take(SIDE * sizeof *seen->of_lines.buckets);
     seen->of_lines.spans_len = seen->of_lines.active_len = spans;
     seen->of_lines.buckets_len = SIDE;
-    seen->remembered = (NAME(patchray_remembered) *)take(SURFACES * sizeof *seen->remembered);
     seen->followed = (NAME(patchray_followed) *)take(SURFACES * sizeof *seen->followed);
-    return seen->remembered != NULL && seen->followed != NULL;
+    return seen->followed != NULL;
 }
 
 static int32_t NAME(trace_line)(enum NAME(line_method) method, NAME(seen) * seen, const NAME(patchray_line) * line,
@@ -53,16 +44,6 @@ static int32_t NAME(trace_line)(enum NAME(line_method) method, NAME(seen) * seen
     const NAME(patchray_view) *view = &seen->view;
     NAME(patchray_line_memory) *memory = &seen->of_lines;
     switch (method) {
-    case NAME(CLIPPING_LINE):
-        return NAME(patchray_clipping_line)(view, line, memory, NULL, scratch, WORDS(CLIP), hits, codes, works);
-    case NAME(NEWTON_LINE):
-        return NAME(patchray_newton_line)(view, line, memory, NULL, scratch, WORDS(NEWTON), hits, codes, works);
-    case NAME(CLIPPING_COHERENT_LINE):
-        return NAME(patchray_clipping_coherent_line)(view, line, memory, seen->remembered, SURFACES, NULL, scratch,
-                                                     WORDS(CLIP), hits, codes, works);
-    case NAME(NEWTON_COHERENT_LINE):
-        return NAME(patchray_newton_coherent_line)(view, line, memory, seen->remembered, SURFACES, NULL, scratch,
-                                                   WORDS(NEWTON), hits, codes, works);
     case NAME(CLIPPING_PREDICTED_LINE):
         return NAME(patchray_clipping_predicted_line)(view, line, memory, seen->followed, SURFACES, NULL, scratch,
                                                       WORDS(CLIP), hits, codes, works);
@@ -81,7 +62,6 @@ static bool NAME(trace_lines)(enum NAME(line_method) method, const char *name, N
     static patchray_work works[SIDE];
     uint32_t count = 0;
     hash = 0xcbf29ce484222325u;
-    memset(seen->remembered, 0, SURFACES * sizeof *seen->remembered);
     memset(seen->followed, 0, SURFACES * sizeof *seen->followed);
     for (int row = 0; row < SIDE; row++) {
         // All exact.
@@ -112,10 +92,6 @@ static bool NAME(run_lines)(void)
     static NAME(seen) seen;
     taken = 0;
     return NAME(prepare_patches)(&all, NULL) && NAME(look)(&all, &seen)
-        && NAME(trace_lines)(NAME(CLIPPING_LINE), "clipping-line", &seen)
-        && NAME(trace_lines)(NAME(NEWTON_LINE), "newton-line", &seen)
-        && NAME(trace_lines)(NAME(CLIPPING_COHERENT_LINE), "clipping-coherent-line", &seen)
-        && NAME(trace_lines)(NAME(NEWTON_COHERENT_LINE), "newton-coherent-line", &seen)
         && NAME(trace_lines)(NAME(CLIPPING_PREDICTED_LINE), "clipping-predicted-line", &seen)
         && NAME(trace_lines)(NAME(NEWTON_PREDICTED_LINE), "newton-predicted-line", &seen);
 }

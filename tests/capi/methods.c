@@ -1,6 +1,5 @@
-// The teapot in 64 x 64 rays by every method and in both precisions: prepared in lent memory, traced ray by ray and by scan
-// lines, and of each a line
-// with a hash of all hits and counters, to be compared with the one that Rust finds. For the host and for bare metal.
+// The teapot in 64 x 64 rays by every method and in both precisions: prepared in lent memory, traced ray by ray or by scan
+// lines, and of each a line with a hash of all hits and counters, to be compared with the one that Rust finds. For the host and for bare metal.
 
 #include "patchray.h"
 #include "teapot.h"

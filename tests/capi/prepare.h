@@ -1,4 +1,4 @@
-// How methods.c prepares the teapot in one precision, and traces it ray by ray by all methods. Included after precision.h.
+// How methods.c prepares the teapot in one precision, and traces it ray by ray by the methods for that. Included after precision.h.
 
 // A scene and its patches, with trees if they are wanted.
 static bool NAME(prepare_patches)(NAME(prepared) * all, NAME(patchray_tree) * tree)

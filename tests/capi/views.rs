@@ -56,7 +56,7 @@ impl Picture {
     }
 }
 
-/// A view with patches or without, and all that tracing a line of it takes.
+/// A view, and all that tracing a line of it takes.
 struct Seen<S> {
     picture: Picture,
     prepared: Prepared<S>,
@@ -93,22 +93,24 @@ fn no_memory<S>() -> patchray_view_memory<S> {
 
 impl<S: Scalar> Seen<S> {
     /// `None` if the scene cannot be traced as this view.
-    fn of<P: Views<Scalar = S>>(model: &Model, picture: Picture, patches: bool) -> Option<Self> {
+    fn of<P: Views<Scalar = S>>(model: &Model, picture: Picture) -> Option<Self> {
         let (camera, rays) = (picture.camera(), picture.side as usize);
         let prepared = Prepared::of::<P>(model);
         let (mut memory, mut lent) = (no_memory(), Vec::new());
         // SAFETY: all zeros is a table of no library.
         let mut view = unsafe { core::mem::zeroed() };
-        let of_patches = if patches { &raw const prepared.patches } else { null() };
         // SAFETY: addresses of memory as large as said, here and below.
-        let code = unsafe { P::VIEW(&prepared.scene, of_patches, &camera, &mut memory, &mut view) };
+        let code = unsafe { P::VIEW(&prepared.scene, &prepared.patches, &camera, &mut memory, &mut view) };
         if code == PATCHRAY_CAMERA_FAR {
             return None;
         }
         assert_eq!(name(code), name(PATCHRAY_MEMORY));
         lend(&mut memory, &mut lent);
-        assert_eq!(unsafe { P::VIEW(&prepared.scene, of_patches, &camera, &mut memory, &mut view) }, PATCHRAY_OK);
-        let seen = if patches { view.patches.patches_len } else { view.surfaces_len };
+        assert_eq!(
+            unsafe { P::VIEW(&prepared.scene, &prepared.patches, &camera, &mut memory, &mut view) },
+            PATCHRAY_OK
+        );
+        let seen = view.patches.patches_len;
         let slots = model.surfaces.len() * size_of::<patchray_followed<S>>();
         let line_memory = patchray_line_memory {
             spans: take(&mut lent, seen, 0),
@@ -152,7 +154,7 @@ impl<S: Scalar> Seen<S> {
             view: &raw const self.view,
             line: &raw const self.line,
             line_memory: &raw mut self.line_memory,
-            memory: self.memory.as_mut_ptr(),
+            memory: self.memory.as_mut_ptr().cast(),
             memory_len: self.prepared.surfaces(),
             limits: null(),
             scratch: self.prepared.scratch.as_mut_ptr(),
@@ -168,41 +170,32 @@ impl<S: Scalar> Seen<S> {
 type Answer<S> = (i32, Option<patchray_hit<S>>, [u32; Work::COUNT]);
 
 /// The methods, in the order of [`Views::LINES`].
-const METHODS: [InView; 6] = [
-    InView::Clipping,
-    InView::Newton,
-    InView::ClippingCoherent,
-    InView::NewtonCoherent,
-    InView::ClippingPredicted,
-    InView::NewtonPredicted,
-];
+const METHODS: [InView; 2] = [InView::ClippingPredicted, InView::NewtonPredicted];
 
 /// The same rays in Rust.
 fn in_rust<P: Views>(
     prepared: &common::Prepared<P>,
     picture: Picture,
-    patches: bool,
     method: usize,
     mut each: impl FnMut(Answer<P::Scalar>),
 ) {
     let patchray_camera { eye, forward, right, up } = picture.camera();
     let camera = Camera { eye, forward, right, up };
-    let mut room = ViewRoom::for_view(prepared, patches, &camera).expect("there is one in C");
-    let view = room.build(prepared, patches, &camera).expect("as was asked for");
-    let method = if patches { METHODS[method] } else { InView::ClippingBare };
+    let mut room = ViewRoom::for_view(prepared, &camera).expect("there is one in C");
+    let view = room.build(prepared, &camera).expect("as was asked for");
     let (mut lines, mut thread) = (LineRoom::for_any(prepared, 64), Thread::<P>::new(prepared.surfaces.len()));
     let interval = Interval::new(P::Scalar::ZERO, P::Scalar::from_f64(1e30)).expect("it is one");
     for row in picture.rows() {
         let y = picture.y(row);
         let window = Window { x: [picture.x(0), picture.x(picture.side - 1)], y: [y; 2] };
-        let mut line = lines.line(&view, method, window).expect("there is memory for any");
+        let mut line = lines.line(&view, window).expect("there is memory for any");
         thread.last = u32::MAX;
         for column in 0..picture.side {
             let Ok(ray) = view.ray([picture.x(column), y], &interval) else {
                 each((PATCHRAY_RAY_OUT_OF_VIEW, None, [0; Work::COUNT]));
                 continue;
             };
-            let (code, hit) = match thread.trace(method, &view, &mut line, row, &ray, &Limits::default()) {
+            let (code, hit) = match thread.trace(METHODS[method], &view, &mut line, row, &ray, &Limits::default()) {
                 Ok(hit) => (i32::from(hit.is_some()), hit),
                 Err(GaveUp { best, .. }) => (-1, best),
             };
@@ -230,22 +223,20 @@ fn in_c<P: Views>(seen: &mut Seen<P::Scalar>, method: usize) -> Vec<Answer<P::Sc
     answers
 }
 
-/// Compares all methods; how many hits there were. None if the scene cannot be traced as one view.
+/// Compares both methods; how many hits there were. None if the scene cannot be traced as one view.
 fn agree<P: Views>(name: &str, model: &Model, picture: Picture) -> usize {
     let prepared = common::Prepared::<P>::of(model);
     let mut hits = 0;
-    for (patches, methods) in [(true, 0..6), (false, 0..1)] {
-        let Some(mut seen) = Seen::of::<P>(model, picture, patches) else {
-            return 0;
-        };
-        for method in methods {
-            let mut answers = in_c::<P>(&mut seen, method).into_iter();
-            in_rust::<P>(&prepared, picture, patches, method, |answer| {
-                hits += usize::from(answer.1.is_some());
-                assert_eq!(Some(answer), answers.next(), "{name}, method {method}");
-            });
-            assert_eq!(answers.next(), None);
-        }
+    let Some(mut seen) = Seen::of::<P>(model, picture) else {
+        return 0;
+    };
+    for method in 0..METHODS.len() {
+        let mut answers = in_c::<P>(&mut seen, method).into_iter();
+        in_rust::<P>(&prepared, picture, method, |answer| {
+            hits += usize::from(answer.1.is_some());
+            assert_eq!(Some(answer), answers.next(), "{name}, method {method}");
+        });
+        assert_eq!(answers.next(), None);
     }
     hits
 }
@@ -264,10 +255,9 @@ fn scan_lines_have_the_answers_of_rust() {
 
 /// The lines of `methods.c` that tell of scan lines.
 pub(crate) fn lines<P: Views>(model: &Model, precision: &str, out: &mut String) {
-    const NAMES: [&str; 6] =
-        ["clipping", "newton", "clipping-coherent", "newton-coherent", "clipping-predicted", "newton-predicted"];
+    const NAMES: [&str; 2] = ["clipping-predicted", "newton-predicted"];
     agree::<P>("the teapot", model, TEAPOT);
-    let mut seen = Seen::of::<P>(model, TEAPOT, true).expect("the teapot is near");
+    let mut seen = Seen::of::<P>(model, TEAPOT).expect("the teapot is near");
     for (method, name) in NAMES.into_iter().enumerate() {
         let answers = in_c::<P>(&mut seen, method);
         let (mut hash, hits) = (START, answers.iter().filter(|answer| answer.1.is_some()).count());
@@ -282,11 +272,10 @@ pub(crate) fn lines<P: Views>(model: &Model, precision: &str, out: &mut String) 
 #[test]
 fn lines_refuse_what_is_wrong() {
     fn check<P: Views>() {
-        let mut seen = Seen::of::<P>(&model(), HARD, true).expect("it is near");
-        let mut bare = Seen::of::<P>(&model(), HARD, false).expect("it is near");
+        let mut seen = Seen::of::<P>(&model(), HARD).expect("it is near");
         let nan = P::Scalar::from_f64(f64::NAN);
         for (number, call) in P::LINES.iter().enumerate() {
-            let (newton, keeps) = (number % 2 == 1, number > 1);
+            let newton = number == 1;
             let (view, line, line_memory) = (seen.view, seen.line, seen.line_memory);
             let mut refused =
                 |code: i32, what: &str, spoil: &dyn Fn(&mut Seen<P::Scalar>, &mut Arguments<P::Scalar>)| {
@@ -353,12 +342,10 @@ fn lines_refuse_what_is_wrong() {
             refused(PATCHRAY_OPTION, "rows upside down", &|s, _| {
                 s.line.y = [P::Scalar::ONE, -P::Scalar::ONE];
             });
-            if keeps {
-                refused(PATCHRAY_NULL, "no coherence memory", &|_, a| a.memory = null_mut());
-                refused(PATCHRAY_MISALIGNED, "misaligned memory", &|_, a| a.memory = off_mut(a.memory));
-                refused(PATCHRAY_OVERLAP, "memory over the scratch", &|_, a| a.memory = a.scratch);
-                refused(PATCHRAY_MEMORY, "a slot less than surfaces", &|_, a| a.memory_len -= 1);
-            }
+            refused(PATCHRAY_NULL, "no coherence memory", &|_, a| a.memory = null_mut());
+            refused(PATCHRAY_MISALIGNED, "misaligned memory", &|_, a| a.memory = off_mut(a.memory));
+            refused(PATCHRAY_OVERLAP, "memory over the scratch", &|_, a| a.memory = a.scratch.cast());
+            refused(PATCHRAY_MEMORY, "a slot less than surfaces", &|_, a| a.memory_len -= 1);
             // What is wrong with a ray is its own.
             let mut of_rays = |code: i32, spoil: &dyn Fn(&mut Seen<P::Scalar>)| {
                 let arguments = seen.row(12);
@@ -373,11 +360,6 @@ fn lines_refuse_what_is_wrong() {
             of_rays(PATCHRAY_RAY_NAN, &|s| s.places[11] = nan);
             of_rays(PATCHRAY_RAY_INFINITE, &|s| s.places[10] = -P::Scalar::INFINITY);
             of_rays(PATCHRAY_RAY_OUT_OF_LINE, &|s| s.line.x[0] = P::Scalar::ZERO);
-            // Patches are what all but clipping look for.
-            let arguments = bare.row(12);
-            // SAFETY: a right call.
-            let code = unsafe { call(&arguments) };
-            assert_eq!(name(code), name(if number == 0 { PATCHRAY_OK } else { PATCHRAY_TABLES }));
         }
     }
     check::<Plain<f32>>();
@@ -440,10 +422,7 @@ fn views_refuse_wrong_memory_and_cameras() {
         // Surfaces without patches would be seen by no ray.
         let fewer = patchray_patches { first_len: prepared.patches.first_len - 1, ..prepared.patches };
         assert_eq!(name(build(&mut memory, scene, &raw const fewer, &right)), "PATCHRAY_TABLES");
-        // Without patches none are asked for.
-        let mut bare = no_memory();
-        assert_eq!(build(&mut bare, scene, null(), &right), PATCHRAY_MEMORY);
-        assert_eq!((bare.points_len, bare.patches_len, bare.first_runs_len), (needs.points_len, 0, 0));
+        assert_eq!(build(&mut memory, scene, null(), &right), PATCHRAY_NULL);
     }
     check::<Plain<f32>>();
     check::<Weighted<f32>>();

@@ -20,6 +20,13 @@ use rayon::prelude::*;
 /// Rays per case and camera, unless the environment says otherwise.
 const RAYS: usize = 250;
 
+/// A method for the rays of a view, or one that traces each by itself.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum By {
+    View(InView),
+    Rays(Method),
+}
+
 /// Each ray by itself: by tree, by grids, or by the scene's grid alone.
 pub(crate) fn one_by_one<P: Kind>(
     prepared: &Prepared<P>,

@@ -13,14 +13,12 @@ use patchray::scalar::Scalar;
 use patchray::subdivide::Subdivision;
 use patchray_host::scene::model::Model;
 use patchray_host::scene::shapes::parallelogram;
-use patchray_host::scene::trace::Method;
 
 /// A budget by name: how to set it, and the counter that it bounds.
 type Budget<S> = (Limit, fn(&mut Limits<S>, u32), fn(&Work) -> u32);
 
-fn budgets<S: Scalar>() -> [Budget<S>; 6] {
+fn budgets<S: Scalar>() -> [Budget<S>; 5] {
     [
-        (Limit::Surfaces, |l, n| l.surfaces = n, |w| w.surfaces_tested),
         (Limit::Patches, |l, n| l.patches = n, |w| w.patches_tested),
         (Limit::Spans, |l, n| l.spans = n, |w| w.spans_visited),
         (Limit::NewtonSteps, |l, n| l.newton_steps = n, |w| w.newton_steps),
@@ -30,7 +28,7 @@ fn budgets<S: Scalar>() -> [Budget<S>; 6] {
 }
 
 /// Every budget from nothing to enough for some rays; how often each gave up.
-fn every_budget<P: Kind>(name: &str) -> [u32; 6] {
+fn every_budget<P: Kind>(name: &str) -> [u32; 5] {
     let case = cases().into_iter().find(|case| case.name == name).expect("the corpus has it");
     let prepared = Prepared::<P>::new(
         &case.model,
@@ -39,34 +37,34 @@ fn every_budget<P: Kind>(name: &str) -> [u32; 6] {
     );
     let surfaces = &case.model.surfaces;
     let limits = Limits::<P::Scalar>::default();
-    let mut gave_up = [0; 6];
+    let mut gave_up = [0; 5];
     for named in cameras(surfaces).into_iter().take(2).chain(inside(surfaces).into_iter().take(1)) {
         let camera = scaled(&named.camera, 1.0);
         for method in InView::ALL {
-            let mut room = ViewRoom::for_view(&prepared, method.has_patches(), &camera).unwrap();
-            let view = room.build(&prepared, method.has_patches(), &camera).unwrap();
+            let mut room = ViewRoom::for_view(&prepared, &camera).unwrap();
+            let view = room.build(&prepared, &camera).unwrap();
             for (number, row) in (0..).zip(rows(18, false, 0)) {
                 let window = Window { x: [-1.0, 1.0].map(P::Scalar::from_f64), y: row.y.map(P::Scalar::from_f64) };
                 let line_room = LineRoom::for_any(&prepared, 12);
                 let (mut straight, mut again) = (line_room.clone(), line_room);
-                let mut straight = straight.line(&view, method, window).unwrap();
+                let mut straight = straight.line(&view, window).unwrap();
                 let mut thread = Thread::new(surfaces.len());
-                let nothing = (thread.remembered.clone(), thread.followed.clone(), thread.last);
+                let nothing = (thread.followed.clone(), thread.last);
                 for place in &row.places {
                     let ray = view.ray(place.map(P::Scalar::from_f64), &Interval::ahead()).unwrap();
-                    let memory = (thread.remembered.clone(), thread.followed.clone(), thread.last);
+                    let memory = (thread.followed.clone(), thread.last);
                     let full = thread.trace(method, &view, &mut straight, number, &ray, &limits);
                     let full = full.expect("the default budgets are far from any ray of these");
-                    let after = (thread.remembered.clone(), thread.followed.clone(), thread.last);
+                    let after = (thread.followed.clone(), thread.last);
                     for (b, (limit, set, counter)) in budgets::<P::Scalar>().into_iter().enumerate() {
                         // In a line of its own, which counts what building the list takes.
-                        let mut run = |small: &Limits<P::Scalar>, memory: &(Vec<_>, Vec<_>, _)| {
-                            let mut line = again.line(&view, method, window).unwrap();
-                            (thread.remembered, thread.followed, thread.last) = memory.clone();
+                        let mut run = |small: &Limits<P::Scalar>, memory: &(Vec<_>, _)| {
+                            let mut line = again.line(&view, window).unwrap();
+                            (thread.followed, thread.last) = memory.clone();
                             let answer = thread.trace(method, &view, &mut line, number, &ray, small);
                             let work = thread.work;
                             // Out of a budget, and then with enough: as if nothing had been.
-                            (thread.remembered, thread.followed, thread.last) = memory.clone();
+                            (thread.followed, thread.last) = memory.clone();
                             let then = thread.trace(method, &view, &mut line, number, &ray, &limits);
                             (answer, work, then)
                         };
@@ -80,35 +78,32 @@ fn every_budget<P: Kind>(name: &str) -> [u32; 6] {
                             let (answer, work, then) = run(&small, &memory);
                             assert_eq!(then, Ok(full));
                             // The search that memory led, and the one without.
-                            let searches = if method.remembers() { 2 } else { 1 };
-                            assert!(counter(&work) <= searches * n, "{limit}: {} of {n}", counter(&work));
+                            assert!(counter(&work) <= 2 * n, "{limit}: {} of {n}", counter(&work));
                             if n >= needed {
                                 assert_eq!((answer, work), (Ok(full), used), "{limit} {n}");
                                 continue;
                             }
                             // Short of what the ray needs: without memory it may need less.
-                            if method.remembers() {
-                                let (alone, ..) = run(&small, &nothing);
-                                if alone.is_ok() {
-                                    assert!(counter(&work) >= n);
-                                    // Another start may round otherwise.
-                                    let t = |answer: &Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>>| {
-                                        answer.map(|hit| hit.map(|hit| hit.t.to_f64())).ok()
-                                    };
-                                    let near = match (t(&answer), t(&alone)) {
-                                        (Some(Some(a)), Some(Some(b))) => {
-                                            (a - b).abs() <= 64.0 * P::Scalar::EPSILON.to_f64() * b
-                                        }
-                                        (a, b) => a == b,
-                                    };
-                                    assert!(near, "{method:?} {limit} {n}");
-                                    continue;
-                                }
-                                // What memory led into may leave more to the rest than a search without it has.
-                                if let Ok(hit) = answer {
-                                    assert!(counter(&work) > n && hit.is_some() == full.is_some());
-                                    continue;
-                                }
+                            let (alone, ..) = run(&small, &nothing);
+                            if alone.is_ok() {
+                                assert!(counter(&work) >= n);
+                                // Another start may round otherwise.
+                                let t = |answer: &Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>>| {
+                                    answer.map(|hit| hit.map(|hit| hit.t.to_f64())).ok()
+                                };
+                                let near = match (t(&answer), t(&alone)) {
+                                    (Some(Some(a)), Some(Some(b))) => {
+                                        (a - b).abs() <= 64.0 * P::Scalar::EPSILON.to_f64() * b
+                                    }
+                                    (a, b) => a == b,
+                                };
+                                assert!(near, "{method:?} {limit} {n}");
+                                continue;
+                            }
+                            // What memory led into may leave more to the rest than a search without it has.
+                            if let Ok(hit) = answer {
+                                assert!(counter(&work) > n && hit.is_some() == full.is_some());
+                                continue;
                             }
                             let short = answer.expect_err("a budget that is too small is not an answer");
                             assert_eq!(short.limit, limit, "{method:?}");
@@ -116,7 +111,7 @@ fn every_budget<P: Kind>(name: &str) -> [u32; 6] {
                             gave_up[b] += 1;
                         }
                     }
-                    (thread.remembered, thread.followed, thread.last) = after;
+                    (thread.followed, thread.last) = after;
                 }
             }
         }
@@ -132,19 +127,18 @@ fn every_budget_from_nothing_to_enough() {
         every_budget::<Weighted<f64>>("torus"),
     ] {
         println!("gave up on {gave_up:?}");
-        assert!(gave_up[..5].iter().all(|&n| n > 20), "{gave_up:?}");
+        assert!(gave_up[..4].iter().all(|&n| n > 20), "{gave_up:?}");
     }
 }
 
 /// What a method may do in a scene seen in lines of so many spans.
 fn extent<P: Kind>(prepared: &Prepared<P>, method: InView, spans: usize) -> Extent {
-    let clips = matches!(method.judged_as(), Method::Clipping | Method::ClippingCoherent);
     Extent {
         surfaces: prepared.surfaces.len() as u32,
-        patches: if method.has_patches() { prepared.patches.len() as u32 } else { 0 },
+        patches: prepared.patches.len() as u32,
         spans: spans as u32,
-        walks: if method.remembers() { 2 } else { 0 },
-        clipped: clips,
+        walks: 2,
+        clipped: method == InView::ClippingPredicted,
         ..Default::default()
     }
 }
@@ -160,15 +154,15 @@ fn no_ray_passes_the_worst_case() {
         for named in cameras(surfaces).into_iter().chain(inside(surfaces)) {
             let camera = scaled(&named.camera, 1.0);
             for method in InView::ALL {
-                let mut room = ViewRoom::for_view(&prepared, method.has_patches(), &camera).unwrap();
-                let view = room.build(&prepared, method.has_patches(), &camera).unwrap();
+                let mut room = ViewRoom::for_view(&prepared, &camera).unwrap();
+                let view = room.build(&prepared, &camera).unwrap();
                 let mut thread = Thread::new(surfaces.len());
                 for (number, row) in (0..).zip(rows(80, true, 0)) {
                     let window = Window { x: [-1.0, 1.0].map(P::Scalar::from_f64), y: row.y.map(P::Scalar::from_f64) };
-                    let spans = LineRoom::sized(0, 0).line(&view, method, window).map(|_| ()).unwrap_err().spans.needed;
+                    let spans = LineRoom::sized(0, 0).line(&view, window).map(|_| ()).unwrap_err().spans.needed;
                     let worst = limits.worst_case(&extent(&prepared, method, spans)).counts();
                     let mut line_room = LineRoom::for_any(&prepared, 12);
-                    let mut line = line_room.line(&view, method, window).unwrap();
+                    let mut line = line_room.line(&view, window).unwrap();
                     for place in &row.places {
                         let ray = view.ray(place.map(P::Scalar::from_f64), &Interval::ahead()).unwrap();
                         let _ = thread.trace(method, &view, &mut line, number, &ray, &limits);
@@ -202,10 +196,10 @@ fn the_worst_case_of_spans_is_come_near() {
                 up: [0.0, 1.0, 0.0],
             };
             for method in InView::ALL {
-                let mut room = ViewRoom::for_view(&prepared, method.has_patches(), &camera).unwrap();
-                let view = room.build(&prepared, method.has_patches(), &camera).unwrap();
+                let mut room = ViewRoom::for_view(&prepared, &camera).unwrap();
+                let view = room.build(&prepared, &camera).unwrap();
                 let mut line_room = LineRoom::for_any(&prepared, 1);
-                let mut line = line_room.line(&view, method, Window { x: [0.0, 0.0], y: [0.0, 0.0] }).unwrap();
+                let mut line = line_room.line(&view, Window { x: [0.0, 0.0], y: [0.0, 0.0] }).unwrap();
                 // Beside all sheets but within their outlines would be worse still; behind them is as far as a ray goes here.
                 let beyond = Interval::new(100.0, 200.0).unwrap();
                 let ray = view.ray([0.0, 0.0], &beyond).unwrap();

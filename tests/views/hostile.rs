@@ -8,11 +8,10 @@ use crate::corpus::{Case, cases};
 use crate::image::{Row, ray_lines, rows, trace};
 use crate::rooms::{Answer, InView, LineRoom, Thread, ViewRoom};
 use patchray::limits::{Acceptance, Limit, Limits};
-use patchray::line::{Line, Window};
+use patchray::line::Window;
 use patchray::point::{Plain, Weighted};
 use patchray::ray::{Interval, RayError};
 use patchray::scalar::Scalar;
-use patchray::span::Order;
 use patchray::subdivide::Subdivision;
 use patchray::view::Camera;
 use patchray_host::scene::trace::{Method, Precision};
@@ -30,19 +29,19 @@ fn any_length<P: Kind>(case: &Case, exponents: &[i32]) {
     let prepared = coarse::<P>(case);
     let camera = scaled::<P::Scalar>(&cameras(&case.model.surfaces)[0].camera, 1.0);
     let rows = rows(120, false, 0);
-    for method in [InView::ClippingBare, InView::Newton, InView::NewtonPredicted] {
+    for method in [InView::ClippingPredicted, InView::NewtonPredicted] {
         let run = |across: i32| {
             let by = |v: [P::Scalar; 3]| v.map(|c| c.times_power_of_two(across));
             let camera = Camera { right: by(camera.right), up: by(camera.up), ..camera };
             let scale = |c: f64| P::Scalar::from_f64(c).times_power_of_two(-across);
-            let mut room = ViewRoom::for_view(&prepared, method.has_patches(), &camera).ok()?;
-            let view = room.build(&prepared, method.has_patches(), &camera).ok()?;
+            let mut room = ViewRoom::for_view(&prepared, &camera).ok()?;
+            let view = room.build(&prepared, &camera).ok()?;
             let mut thread = Thread::new(prepared.surfaces.len());
             let mut answers = Vec::new();
             for Row { y, places } in &rows {
                 let window = Window { x: [-1.0, 1.0].map(scale), y: y.map(scale) };
                 let mut line_room = LineRoom::for_any(&prepared, 9);
-                let mut line = line_room.line(&view, method, window).unwrap();
+                let mut line = line_room.line(&view, window).unwrap();
                 for place in places {
                     let ray = view.ray(place.map(scale), &Interval::ahead()).unwrap();
                     answers.push(thread.trace(method, &view, &mut line, 0, &ray, &Limits::default()));
@@ -104,7 +103,7 @@ fn fields_of_any_width_and_eyes_near_a_surface() {
             let rays = ray_lines(&camera, &rows);
             for method in InView::ALL {
                 // Of two roots on one patch, one of them the eye, Newton's method finds one or the other.
-                if name == "on a surface" && matches!(method.judged_as(), Method::Newton | Method::NewtonCoherent) {
+                if name == "on a surface" && method.judged_as() == Method::NewtonCoherent {
                     continue;
                 }
                 let limits = Limits { acceptance: Acceptance::Proved, ..Limits::default() };
@@ -129,7 +128,7 @@ fn fields_of_any_width_and_eyes_near_a_surface() {
     }
 }
 
-/// Vectors that all but lie in a plane, up to where the view refuses them: views and lines agree on where things are.
+/// Vectors that all but lie in a plane, up to where the view refuses them: a row and the whole image agree on where things are.
 #[test]
 fn all_but_flat_cameras() {
     fn check<P: Kind>(case: &Case, tilts: &[f64]) {
@@ -141,27 +140,26 @@ fn all_but_flat_cameras() {
             for lean in [1.0, -1.0] {
                 let right = add(straight.right.map(|c| c * tilt), lean, straight.forward);
                 let camera = scaled::<P::Scalar>(&Camera { right, ..straight }, 1.0);
-                let Ok(mut bare) = ViewRoom::for_view(&prepared, false, &camera) else {
+                let Ok(mut room) = ViewRoom::for_view(&prepared, &camera) else {
                     refused += 1;
                     continue;
                 };
-                let mut full = ViewRoom::for_view(&prepared, true, &camera).unwrap();
-                let (bare, full) =
-                    (bare.build(&prepared, false, &camera).unwrap(), full.build(&prepared, true, &camera).unwrap());
+                let view = room.build(&prepared, &camera).unwrap();
                 let (mut one, mut other) = (Thread::new(prepared.surfaces.len()), Thread::new(prepared.surfaces.len()));
                 let mut differing = 0;
+                let all = [P::Scalar::LEAST, P::Scalar::INFINITY];
+                let (mut first, mut second) = (LineRoom::for_any(&prepared, 1), LineRoom::for_any(&prepared, 9));
+                let mut of_image = first.line(&view, Window { x: all, y: all }).unwrap();
                 for k in -40..=40 {
                     let y = P::Scalar::from_f64(f64::from(k) / 50.0);
                     let window = Window { x: [-P::Scalar::ONE, P::Scalar::ONE], y: [y, y] };
-                    let (mut first, mut second) = (LineRoom::for_any(&prepared, 9), LineRoom::for_any(&prepared, 9));
-                    let mut of_surfaces = first.line(&bare, InView::ClippingBare, window).unwrap();
-                    let mut of_patches = second.line(&full, InView::Newton, window).unwrap();
+                    let mut of_row = second.line(&view, window).unwrap();
                     for j in -100..=100 {
                         let x = P::Scalar::from_f64(f64::from(j) / 100.0);
-                        let Ok(ray) = bare.ray([x, y], &Interval::ahead()) else { continue };
+                        let Ok(ray) = view.ray([x, y], &Interval::ahead()) else { continue };
                         let limits = Limits::default();
-                        let clipped = one.trace(InView::ClippingBare, &bare, &mut of_surfaces, 0, &ray, &limits);
-                        let solved = other.trace(InView::Newton, &full, &mut of_patches, 0, &ray, &limits);
+                        let clipped = one.trace(InView::ClippingPredicted, &view, &mut of_image, 0, &ray, &limits);
+                        let solved = other.trace(InView::NewtonPredicted, &view, &mut of_row, 0, &ray, &limits);
                         let kinds = [clipped.unwrap().is_some(), solved.unwrap().is_some()];
                         differing += u32::from(kinds[0] != kinds[1]);
                     }
@@ -183,12 +181,12 @@ fn windows_of_any_numbers() {
     let camera = cameras(&case.model.surfaces)[0].camera;
     let (nan, infinite, tiny) = (f64::NAN, f64::INFINITY, f64::from_bits(1));
     for method in InView::ALL {
-        let mut room = ViewRoom::for_view(&prepared, method.has_patches(), &camera).unwrap();
-        let view = room.build(&prepared, method.has_patches(), &camera).unwrap();
+        let mut room = ViewRoom::for_view(&prepared, &camera).unwrap();
+        let view = room.build(&prepared, &camera).unwrap();
         let expected = {
             let mut line_room = LineRoom::for_any(&prepared, 9);
             let window = Window { x: [-1.0, 1.0], y: [0.0, 0.0] };
-            let mut line = line_room.line(&view, method, window).unwrap();
+            let mut line = line_room.line(&view, window).unwrap();
             let ray = view.ray([0.0, 0.0], &Interval::ahead()).unwrap();
             Thread::new(1).trace(method, &view, &mut line, 0, &ray, &Limits::default())
         };
@@ -210,7 +208,7 @@ fn windows_of_any_numbers() {
                 ([-1.0, 1.0], [0.1, infinite], false),
             ] {
                 let mut line_room = LineRoom::for_any(&prepared, buckets);
-                let mut line = line_room.line(&view, method, Window { x, y }).unwrap();
+                let mut line = line_room.line(&view, Window { x, y }).unwrap();
                 let ray = view.ray([0.0, 0.0], &Interval::ahead()).unwrap();
                 let answer = Thread::new(1).trace(method, &view, &mut line, 0, &ray, &Limits::default());
                 if covers {
@@ -233,10 +231,10 @@ fn intervals_are_kept_to() {
     let prepared = coarse::<Weighted<f64>>(&case);
     let camera = cameras(&case.model.surfaces)[0].camera;
     for method in InView::ALL {
-        let mut room = ViewRoom::for_view(&prepared, method.has_patches(), &camera).unwrap();
-        let view = room.build(&prepared, method.has_patches(), &camera).unwrap();
+        let mut room = ViewRoom::for_view(&prepared, &camera).unwrap();
+        let view = room.build(&prepared, &camera).unwrap();
         let mut line_room = LineRoom::for_any(&prepared, 9);
-        let mut line = line_room.line(&view, method, Window { x: [-1.0, 1.0], y: [0.0, 0.0] }).unwrap();
+        let mut line = line_room.line(&view, Window { x: [-1.0, 1.0], y: [0.0, 0.0] }).unwrap();
         let mut closest = |min: f64, max: f64| {
             let ray = view.ray([0.1, 0.0], &Interval::new(min, max).unwrap()).unwrap();
             let answer =
@@ -266,46 +264,4 @@ fn an_eye_inside_a_model_of_many_patches_is_answered() {
         let gave_up = answers.iter().filter(|seen| matches!(seen, Ok(Err(_)))).count();
         assert_eq!(gave_up, 0, "{method:?}: {gave_up} of {}: {:?}", answers.len(), answers[0]);
     }
-}
-
-/// A line that is not of the kind that a method takes: an error, or the right answer all the same.
-#[test]
-fn lines_of_another_kind_are_refused_or_answered() {
-    let case = case("teapot");
-    let prepared = coarse::<Plain<f64>>(&case);
-    let camera = cameras(&case.model.surfaces)[0].camera;
-    let mut room = ViewRoom::for_view(&prepared, true, &camera).unwrap();
-    let view = room.build(&prepared, true, &camera).unwrap();
-    let mut wrong = Vec::new();
-    for method in InView::ALL {
-        let mut counts = [0; 3];
-        for y in [-0.3, -0.2, 0.0, 0.1, 0.2] {
-            let window = Window { x: [-1.0, 1.0], y: [y, y] };
-            let mut rooms = [0; 4].map(|_| LineRoom::for_any(&prepared, 9));
-            let [right, surfaces, by_surface, by_depth] = &mut rooms;
-            let mut right = right.line(&view, InView::Newton, window).unwrap();
-            let mut others = [
-                Line::of_surfaces(&view, window, surfaces.lend()).unwrap(),
-                Line::of_patches(&view, window, Order::Surfaces, by_surface.lend()).unwrap(),
-                Line::of_patches(&view, window, Order::Depth, by_depth.lend()).unwrap(),
-            ];
-            for k in -20..=20 {
-                let ray = view.ray([f64::from(k) / 20.0, y], &Interval::ahead()).unwrap();
-                let answer =
-                    |method, line: &mut _| Thread::new(32).trace(method, &view, line, 0, &ray, &Limits::default());
-                let expected = answer(InView::Newton, &mut right).unwrap().map(|hit| hit.t);
-                for (count, line) in counts.iter_mut().zip(&mut others) {
-                    let found = answer(method, line).map(|hit| hit.map(|hit| hit.t));
-                    let same = match (found, expected) {
-                        (Ok(Some(t)), Some(expected)) => (t - expected).abs() < 1e-6,
-                        (Ok(found), expected) => found == expected,
-                        (Err(_), _) => true,
-                    };
-                    *count += u32::from(!same);
-                }
-            }
-        }
-        wrong.push(format!("{method:?}: {counts:?}"));
-    }
-    assert!(wrong.iter().all(|line| line.ends_with("[0, 0, 0]")), "of surfaces, by surface, by depth: {wrong:#?}");
 }

@@ -60,15 +60,15 @@ pub(crate) fn trace<P: Kind>(
     limits: &Limits<P::Scalar>,
 ) -> Vec<Seen<P::Scalar>> {
     let whole = Interval::ahead();
-    let mut room = ViewRoom::for_view(prepared, method.has_patches(), camera).expect("the camera is a good one");
-    let view = room.build(prepared, method.has_patches(), camera).expect("what was asked for is enough");
+    let mut room = ViewRoom::for_view(prepared, camera).expect("the camera is a good one");
+    let view = room.build(prepared, camera).expect("what was asked for is enough");
     let mut thread = Thread::new(prepared.surfaces.len());
     let mut lines = [20, 64, 300, 700].map(|buckets| LineRoom::for_any(prepared, buckets));
     let mut answers = Vec::new();
     for (number, row) in rows.iter().enumerate() {
         let window = Window { x: [-1.0, 1.0], y: row.y };
         let window = Window { x: window.x.map(P::Scalar::from_f64), y: window.y.map(P::Scalar::from_f64) };
-        let mut line = lines[number % 4].line(&view, method, window).expect("there is room for all");
+        let mut line = lines[number % 4].line(&view, window).expect("there is room for all");
         answers.extend(row.places.iter().map(|place| {
             let ray = view.ray(place.map(P::Scalar::from_f64), &whole)?;
             Ok(thread.trace(method, &view, &mut line, number as u32, &ray, limits))

@@ -1,4 +1,4 @@
-//! The rays of a view: what all methods answer, from many cameras, against the oracle and against rays traced one by one.
+//! The rays of a view: what the methods for them answer, from many cameras, against the oracle and against rays traced one by one.
 //!
 //! The models, the judge and the allowances are those of the suite `methods`. `PATCHRAY_RAYS=N` traces N rays per case
 //! instead of the default.

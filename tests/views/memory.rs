@@ -39,26 +39,22 @@ fn one_less<const N: usize>(sizes: [usize; N]) -> impl Iterator<Item = [usize; N
 #[test]
 fn a_view_needs_what_it_says() {
     fn check<P: Kind>(prepared: &Prepared<P>, camera: &Camera<P::Scalar>) {
-        for with_patches in [false, true] {
-            let build = |sizes: [usize; 6]| {
-                let mut room = ViewRoom::<P>::sized(sizes);
-                room.build(prepared, with_patches, camera).map(|_| ())
-            };
-            let Err(ViewError::Memory(needs)) = build([0; 6]) else { panic!("a view needs memory") };
-            let sizes = slots(&needs);
-            let (patches, surfaces) = (prepared.patches.len(), prepared.surfaces.len());
-            let runs: usize = prepared.first.windows(2).map(|ends| ((ends[1] - ends[0]) as usize).div_ceil(RUN)).sum();
-            let of_patches = if with_patches { [patches, patches, runs, surfaces + 1] } else { [0; 4] };
-            assert_eq!(sizes[..2], [prepared.points.len(), surfaces]);
-            assert_eq!(sizes[2..], of_patches);
-            assert_eq!(build(sizes), Ok(()));
-            assert_eq!(build(sizes.map(|n| n + 3)), Ok(()));
-            for given in one_less(sizes).chain([[0; 6]]) {
-                let [points, surfaces, patches, sights, runs, first_runs] =
-                    core::array::from_fn(|k| Need { needed: sizes[k], given: given[k] });
-                let needs = ViewNeeds { points, surfaces, patches, sights, runs, first_runs };
-                assert_eq!(build(given), Err(ViewError::Memory(needs)));
-            }
+        let build = |sizes: [usize; 6]| {
+            let mut room = ViewRoom::<P>::sized(sizes);
+            room.build(prepared, camera).map(|_| ())
+        };
+        let Err(ViewError::Memory(needs)) = build([0; 6]) else { panic!("a view needs memory") };
+        let sizes = slots(&needs);
+        let (patches, surfaces) = (prepared.patches.len(), prepared.surfaces.len());
+        let runs: usize = prepared.first.windows(2).map(|ends| ((ends[1] - ends[0]) as usize).div_ceil(RUN)).sum();
+        assert_eq!(sizes, [prepared.points.len(), surfaces, patches, patches, runs, surfaces + 1]);
+        assert_eq!(build(sizes), Ok(()));
+        assert_eq!(build(sizes.map(|n| n + 3)), Ok(()));
+        for given in one_less(sizes).chain([[0; 6]]) {
+            let [points, surfaces, patches, sights, runs, first_runs] =
+                core::array::from_fn(|k| Need { needed: sizes[k], given: given[k] });
+            let needs = ViewNeeds { points, surfaces, patches, sights, runs, first_runs };
+            assert_eq!(build(given), Err(ViewError::Memory(needs)));
         }
     }
     each::<Plain<f32>>(false, check);
@@ -69,25 +65,23 @@ fn a_view_needs_what_it_says() {
 #[test]
 fn a_line_needs_what_it_says() {
     fn check<P: Kind>(prepared: &Prepared<P>, camera: &Camera<P::Scalar>) {
-        for method in [InView::ClippingBare, InView::Newton, InView::NewtonPredicted] {
-            let mut room = ViewRoom::for_view(prepared, method.has_patches(), camera).unwrap();
-            let view = room.build(prepared, method.has_patches(), camera).unwrap();
-            for row in rows(100, true, 1) {
-                let window = Window { x: [-0.7, 1.0].map(P::Scalar::from_f64), y: row.y.map(P::Scalar::from_f64) };
-                let build = |[spans, active, buckets]: [usize; 3]| {
-                    let mut room = LineRoom::sized(spans, buckets);
-                    room.active.resize(active, 0);
-                    room.line(&view, method, window).map(|_| ())
-                };
-                let needs = build([0; 3]).expect_err("a line needs a bucket");
-                let sizes = [needs.spans, needs.active, needs.buckets].map(|need| need.needed);
-                assert!(sizes[0] <= prepared.patches.len() && sizes[1..] == [sizes[0], 1], "{sizes:?}");
-                assert_eq!(build(sizes), Ok(()));
-                assert_eq!(build(sizes.map(|n| n + 3)), Ok(()));
-                for given in one_less(sizes) {
-                    let [spans, active, buckets] = core::array::from_fn(|k| Need { needed: sizes[k], given: given[k] });
-                    assert_eq!(build(given), Err(LineNeeds { spans, active, buckets }));
-                }
+        let mut room = ViewRoom::for_view(prepared, camera).unwrap();
+        let view = room.build(prepared, camera).unwrap();
+        for row in rows(100, true, 1) {
+            let window = Window { x: [-0.7, 1.0].map(P::Scalar::from_f64), y: row.y.map(P::Scalar::from_f64) };
+            let build = |[spans, active, buckets]: [usize; 3]| {
+                let mut room = LineRoom::sized(spans, buckets);
+                room.active.resize(active, 0);
+                room.line(&view, window).map(|_| ())
+            };
+            let needs = build([0; 3]).expect_err("a line needs a bucket");
+            let sizes = [needs.spans, needs.active, needs.buckets].map(|need| need.needed);
+            assert!(sizes[0] <= prepared.patches.len() && sizes[1..] == [sizes[0], 1], "{sizes:?}");
+            assert_eq!(build(sizes), Ok(()));
+            assert_eq!(build(sizes.map(|n| n + 3)), Ok(()));
+            for given in one_less(sizes) {
+                let [spans, active, buckets] = core::array::from_fn(|k| Need { needed: sizes[k], given: given[k] });
+                assert_eq!(build(given), Err(LineNeeds { spans, active, buckets }));
             }
         }
     }
@@ -100,21 +94,21 @@ fn a_line_needs_what_it_says() {
 fn what_was_in_the_slots_changes_nothing() {
     fn check<P: Kind>(prepared: &Prepared<P>, camera: &Camera<P::Scalar>) {
         let whole = Interval::ahead();
-        let mut clean = ViewRoom::for_view(prepared, true, camera).unwrap();
+        let mut clean = ViewRoom::for_view(prepared, camera).unwrap();
         let mut dirty = clean.clone();
         let elsewhere =
             Camera { eye: camera.eye.map(|c| c * P::Scalar::HALF), right: camera.up, up: camera.right, ..*camera };
-        dirty.build(prepared, true, &elsewhere).unwrap();
+        dirty.build(prepared, &elsewhere).unwrap();
         dirty.patches.rotate_left(1);
         dirty.points.reverse();
         dirty.sights.reverse();
         dirty.first_runs.fill(u32::MAX);
         dirty.runs.fill([P::Scalar::from_f64(f64::NAN); 2]);
-        clean.build(prepared, true, camera).unwrap();
-        dirty.build(prepared, true, camera).unwrap();
+        clean.build(prepared, camera).unwrap();
+        dirty.build(prepared, camera).unwrap();
         assert_eq!((&clean.points, &clean.surfaces, &clean.patches), (&dirty.points, &dirty.surfaces, &dirty.patches));
         assert_eq!((&clean.sights, &clean.runs, &clean.first_runs), (&dirty.sights, &dirty.runs, &dirty.first_runs));
-        let view: View<'_, P> = clean.build(prepared, true, camera).unwrap();
+        let view: View<'_, P> = clean.build(prepared, camera).unwrap();
         let mut used = LineRoom::for_any(prepared, 20);
         for row in rows(60, false, 0) {
             // Each bucket, and each place in the list, names a span that is not there, or another one.
@@ -122,14 +116,14 @@ fn what_was_in_the_slots_changes_nothing() {
             used.active.fill(u32::MAX - 1);
             let window = Window { x: [-1.0, 1.0].map(P::Scalar::from_f64), y: row.y.map(P::Scalar::from_f64) };
             let mut fresh = LineRoom::for_any(prepared, 20);
-            let mut fresh = fresh.line(&view, InView::Newton, window).unwrap();
-            let mut used = used.line(&view, InView::Newton, window).unwrap();
+            let mut fresh = fresh.line(&view, window).unwrap();
+            let mut used = used.line(&view, window).unwrap();
             let (mut one, mut other) = (Thread::new(prepared.surfaces.len()), Thread::new(prepared.surfaces.len()));
             for place in row.places {
                 let ray = view.ray(place.map(P::Scalar::from_f64), &whole).unwrap();
                 let limits = Limits::default();
-                let one_answer = one.trace(InView::Newton, &view, &mut fresh, 0, &ray, &limits);
-                let other_answer = other.trace(InView::Newton, &view, &mut used, 0, &ray, &limits);
+                let one_answer = one.trace(InView::NewtonPredicted, &view, &mut fresh, 0, &ray, &limits);
+                let other_answer = other.trace(InView::NewtonPredicted, &view, &mut used, 0, &ray, &limits);
                 assert_eq!((one_answer, one.work), (other_answer, other.work));
             }
         }
@@ -147,18 +141,17 @@ fn what_is_missing_is_named() {
     let prepared = coarse::<Plain<f64>>(&case.model);
     let camera = cameras(&case.model.surfaces)[0].camera;
     for method in InView::ALL {
-        let mut room = ViewRoom::for_view(&prepared, method.has_patches(), &camera).unwrap();
-        let view = room.build(&prepared, method.has_patches(), &camera).unwrap();
+        let mut room = ViewRoom::for_view(&prepared, &camera).unwrap();
+        let view = room.build(&prepared, &camera).unwrap();
         let mut line_room = LineRoom::for_any(&prepared, 20);
-        let mut line = line_room.line(&view, method, Window { x: [-0.5, 0.5], y: [0.0, 0.0] }).unwrap();
+        let mut line = line_room.line(&view, Window { x: [-0.5, 0.5], y: [0.0, 0.0] }).unwrap();
         let ray = |place| view.ray(place, &Interval::ahead()).unwrap();
         let limit = |slots, ray: ViewRay<f64>, line: &mut _| {
             let mut thread = Thread::new(slots);
             thread.trace(method, &view, line, 0, &ray, &Limits::default()).err().map(|gave_up| gave_up.limit)
         };
         assert_eq!(limit(32, ray([0.0, 0.0]), &mut line), None);
-        let short = method.remembers().then_some(Limit::Memory);
-        assert_eq!(limit(0, ray([0.0, 0.0]), &mut line), short, "{method:?}");
+        assert_eq!(limit(0, ray([0.0, 0.0]), &mut line), Some(Limit::Memory), "{method:?}");
         for elsewhere in [[0.0, 0.1], [0.0, -0.1], [0.51, 0.0], [-0.51, 0.0]] {
             assert_eq!(limit(32, ray(elsewhere), &mut line), Some(Limit::Line), "{method:?}");
         }

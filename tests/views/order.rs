@@ -1,5 +1,6 @@
 //! The answer to a ray is its own: whatever rays came before it, in whatever order, and whatever the memory held.
 
+use crate::agree::{By, one_by_one};
 use crate::cameras::{Named, cameras, inside, scaled};
 use crate::common::{Kind, Prepared, index, is_rational};
 use crate::compare::Judge;
@@ -16,7 +17,7 @@ use patchray::scalar::Scalar;
 use patchray::subdivide::Subdivision;
 use patchray_host::scene::model::Model;
 use patchray_host::scene::shapes::Random;
-use patchray_host::scene::trace::Precision;
+use patchray_host::scene::trace::{Method, Precision};
 use rayon::prelude::*;
 
 /// Rays per case and camera, unless the environment says otherwise.
@@ -74,8 +75,8 @@ fn trace<P: Kind>(
 ) -> Vec<Vec<Seen<P::Scalar>>> {
     let camera = scaled(&named.camera, 1.0);
     let limits = Limits { acceptance, ..Limits::default() };
-    let mut room = ViewRoom::for_view(prepared, method.has_patches(), &camera).expect("the camera is a good one");
-    let view = room.build(prepared, method.has_patches(), &camera).expect("what was asked for is enough");
+    let mut room = ViewRoom::for_view(prepared, &camera).expect("the camera is a good one");
+    let view = room.build(prepared, &camera).expect("what was asked for is enough");
     let mut thread = Thread::new(prepared.surfaces.len());
     let mut line_room = LineRoom::for_any(prepared, 50);
     let mut random = Random(0x0bad_cafe);
@@ -84,7 +85,7 @@ fn trace<P: Kind>(
     for number in course.over(rows.len(), &mut random) {
         let row = &rows[number];
         let window = Window { x: [-1.0, 1.0].map(P::Scalar::from_f64), y: row.y.map(P::Scalar::from_f64) };
-        let mut line = line_room.line(&view, method, window).expect("there is room for all");
+        let mut line = line_room.line(&view, window).expect("there is room for all");
         for k in course.over(width, &mut random) {
             // Never a scan line's number twice, but for repeated lines, whose memory is then as good as any.
             if course.has_rubbish() && index(&mut random, 2) == 0 {
@@ -162,24 +163,33 @@ fn answers_depend_on_nothing_but_the_ray() {
 
 #[test]
 fn nor_do_those_of_clipping_by_the_papers_rule() {
-    suite(Acceptance::Paper, &[InView::ClippingCoherent, InView::ClippingPredicted]);
+    suite(Acceptance::Paper, &[InView::ClippingPredicted]);
 }
 
 /// How many answers name a surface of the second copy of a model that is there twice; and how many hits there were.
-fn second_named<P: Kind>(case: &Case, acceptance: Acceptance, method: InView) -> [usize; 2] {
+fn second_named<P: Kind>(case: &Case, acceptance: Acceptance, method: By) -> [usize; 2] {
     let options = Subdivision { flatness: P::Scalar::from_f64(0.003), ..Subdivision::default() };
     let twice = Model::numbered(case.model.surfaces.iter().chain(&case.model.surfaces).cloned().collect());
     let prepared = Prepared::<P>::new(&twice, 1.0, &options);
     let first = case.model.surfaces.len();
-    // What these remember of each surface may be of different rays, if other rays came in between.
-    let by_the_letter =
-        matches!(method, InView::NewtonCoherent | InView::NewtonCoherentProving | InView::ClippingCoherent);
     let each = |(k, named): (usize, Named)| {
         let rows = rows(rays_per_case(RAYS), k == 1, 77 + k as u64);
-        let courses = OTHERS.into_iter().filter(|_| !by_the_letter).chain([Course::Forward]);
-        let answers = courses.flat_map(|course| trace(&prepared, &named, &rows, method, course, acceptance));
+        let answers: Vec<_> = match method {
+            By::View(method) => {
+                let courses = OTHERS.into_iter().chain([Course::Forward]);
+                courses
+                    .flat_map(|course| trace(&prepared, &named, &rows, method, course, acceptance))
+                    .flatten()
+                    .collect()
+            }
+            // What the coherent ones remember of each surface may be of different rays, if other rays came in between.
+            By::Rays(method) => {
+                let limits = Limits { acceptance, ..Limits::default() };
+                one_by_one(&prepared, method, &ray_lines(&named.camera, &rows), &limits)
+            }
+        };
         let mut count = [0; 2];
-        for hit in answers.flatten().filter_map(|answer| answer.ok()?.ok()?) {
+        for hit in answers.into_iter().filter_map(|answer| answer.ok()?.ok()?) {
             count[0] += usize::from(hit.surface as usize >= first);
             count[1] += 1;
         }
@@ -194,8 +204,10 @@ fn second_named<P: Kind>(case: &Case, acceptance: Acceptance, method: InView) ->
 #[test]
 fn of_surfaces_that_coincide_the_first_is_named() {
     let mut failures = Vec::new();
+    // Not the coherent one of Newton's: from each surface's own memory it finds the roots of both, which differ by roundings.
+    let by_rays = [Method::Newton, Method::Clipping, Method::ClippingCoherent].map(By::Rays);
     for case in cases() {
-        for method in InView::ALL {
+        for method in InView::ALL.map(By::View).into_iter().chain(by_rays) {
             for acceptance in [Acceptance::Paper, Acceptance::Proved] {
                 let of_precisions = if is_rational(&case.model) {
                     [

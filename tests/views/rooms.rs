@@ -3,10 +3,7 @@
 use crate::common::{Kind, Prepared};
 use patchray::limits::{GaveUp, Limits, Work};
 use patchray::line::{Line, LineMemory, LineNeeds, Window};
-use patchray::method::{
-    ClipScratch, Followed, Following, Remembered, Scratch, clipping, clipping_coherent, clipping_predicted, newton,
-    newton_coherent, newton_predicted,
-};
+use patchray::method::{ClipScratch, Followed, Following, Scratch, clipping_predicted, newton_predicted};
 use patchray::patch::Patch;
 use patchray::point::Point;
 use patchray::ray::Hit;
@@ -20,65 +17,30 @@ pub(crate) type Answer<S> = Result<Option<Hit<S>>, GaveUp<S>>;
 /// The methods for the rays of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum InView {
-    Newton,
-    NewtonCoherent,
     NewtonPredicted,
-    /// In a view without patches.
-    ClippingBare,
-    Clipping,
-    ClippingCoherent,
     ClippingPredicted,
-    /// Newton's methods that fall back on clipping, which they do under `Acceptance::Proved`.
-    NewtonProving,
-    NewtonCoherentProving,
+    /// Newton's, falling back on clipping, which it does under `Acceptance::Proved`.
     NewtonPredictedProving,
 }
 
 impl InView {
-    pub(crate) const ALL: [InView; 10] = [
-        InView::Newton,
-        InView::NewtonCoherent,
-        InView::NewtonPredicted,
-        InView::ClippingBare,
-        InView::Clipping,
-        InView::ClippingCoherent,
-        InView::ClippingPredicted,
-        InView::NewtonProving,
-        InView::NewtonCoherentProving,
-        InView::NewtonPredictedProving,
-    ];
+    pub(crate) const ALL: [InView; 3] =
+        [InView::NewtonPredicted, InView::ClippingPredicted, InView::NewtonPredictedProving];
 
-    /// The method whose error allowances it is held to. A predicted method verifies as the coherent one does.
+    /// The method whose error allowances it is held to: a predicted method verifies as the coherent one does.
     pub(crate) fn judged_as(self) -> Method {
         match self {
-            InView::Newton | InView::NewtonProving => Method::Newton,
-            InView::NewtonCoherent
-            | InView::NewtonPredicted
-            | InView::NewtonCoherentProving
-            | InView::NewtonPredictedProving => Method::NewtonCoherent,
-            InView::ClippingBare | InView::Clipping => Method::Clipping,
-            InView::ClippingCoherent | InView::ClippingPredicted => Method::ClippingCoherent,
+            InView::NewtonPredicted | InView::NewtonPredictedProving => Method::NewtonCoherent,
+            InView::ClippingPredicted => Method::ClippingCoherent,
         }
     }
 
-    pub(crate) fn has_patches(self) -> bool {
-        self != InView::ClippingBare
-    }
-
-    pub(crate) fn remembers(self) -> bool {
-        !matches!(self, InView::Newton | InView::NewtonProving | InView::ClippingBare | InView::Clipping)
-    }
-
-    /// In which order it searches a line.
-    pub(crate) fn order(self) -> Order {
-        let by_depth =
-            matches!(self, InView::NewtonPredicted | InView::NewtonPredictedProving | InView::ClippingPredicted);
-        if by_depth { Order::Depth } else { Order::Surfaces }
-    }
-
-    /// Whether it proves what it answers, as far as it is asked to.
-    pub(crate) fn falls_back(self) -> bool {
-        matches!(self, InView::NewtonProving | InView::NewtonCoherentProving | InView::NewtonPredictedProving)
+    /// The method without memory that it is made of.
+    pub(crate) fn original(self) -> Method {
+        match self {
+            InView::NewtonPredicted | InView::NewtonPredictedProving => Method::Newton,
+            InView::ClippingPredicted => Method::Clipping,
+        }
     }
 }
 
@@ -112,29 +74,22 @@ impl<P: Kind> ViewRoom<P> {
     }
 
     /// As much as asking says; or why there is no such view.
-    pub(crate) fn for_view(
-        prepared: &Prepared<P>,
-        with_patches: bool,
-        camera: &Camera<P::Scalar>,
-    ) -> Result<Self, ViewError> {
+    pub(crate) fn for_view(prepared: &Prepared<P>, camera: &Camera<P::Scalar>) -> Result<Self, ViewError> {
         let mut nothing = Self::sized([0; 6]);
-        let patches = with_patches.then(|| prepared.patches());
-        match View::build(&prepared.scene(), patches.as_ref(), camera, nothing.lend()) {
+        match nothing.build(prepared, camera) {
             Err(ViewError::Memory(needs)) => Ok(Self::sized(slots(&needs))),
             Err(error) => Err(error),
             // Of a scene whose first slot is rubbish.
-            Ok(_) => Ok(nothing),
+            Ok(_) => Ok(Self::sized([0; 6])),
         }
     }
 
     pub(crate) fn build<'m>(
         &'m mut self,
         prepared: &'m Prepared<P>,
-        with_patches: bool,
         camera: &Camera<P::Scalar>,
     ) -> Result<View<'m, P>, ViewError> {
-        let patches = with_patches.then(|| prepared.patches());
-        View::build(&prepared.scene(), patches.as_ref(), camera, self.lend())
+        View::build(&prepared.scene(), Some(&prepared.patches()), camera, self.lend())
     }
 }
 
@@ -158,25 +113,20 @@ impl<S: Scalar> LineRoom<S> {
 
     /// Enough for any line of a model.
     pub(crate) fn for_any<P: Kind<Scalar = S>>(prepared: &Prepared<P>, buckets: usize) -> Self {
-        Self::sized(prepared.patches.len().max(prepared.surfaces.len()), buckets)
+        Self::sized(prepared.patches.len(), buckets)
     }
 
     pub(crate) fn lend(&mut self) -> LineMemory<'_, S> {
         LineMemory { spans: &mut self.spans, active: &mut self.active, buckets: &mut self.buckets }
     }
 
-    /// The line that a method takes.
+    /// A line of a view.
     pub(crate) fn line<P: Point<Scalar = S>>(
         &mut self,
         view: &View<'_, P>,
-        method: InView,
         window: Window<S>,
     ) -> Result<Line<'_, S>, LineNeeds> {
-        if method.has_patches() {
-            Line::of_patches(view, window, method.order(), self.lend())
-        } else {
-            Line::of_surfaces(view, window, self.lend())
-        }
+        Line::of_patches(view, window, Order::Depth, self.lend())
     }
 }
 
@@ -184,7 +134,6 @@ impl<S: Scalar> LineRoom<S> {
 pub(crate) struct Thread<P: Point> {
     newton: Box<Scratch<P, 16, 256>>,
     clips: Box<ClipScratch<P, 16, 256, 64>>,
-    pub(crate) remembered: Vec<Remembered<P::Scalar>>,
     pub(crate) followed: Vec<Followed<P::Scalar>>,
     pub(crate) last: u32,
     /// Of the last call.
@@ -196,7 +145,6 @@ impl<P: Kind> Thread<P> {
         Thread {
             newton: Box::new(Scratch::new()),
             clips: Box::new(ClipScratch::new()),
-            remembered: vec![Remembered::EMPTY; surfaces],
             followed: vec![Followed::EMPTY; surfaces],
             last: 0,
             work: Work::default(),
@@ -212,40 +160,22 @@ impl<P: Kind> Thread<P> {
         ray: &ViewRay<P::Scalar>,
         limits: &Limits<P::Scalar>,
     ) -> Answer<P::Scalar> {
-        let Thread { newton, clips, remembered, followed, last, work } = self;
+        let Thread { newton, clips, followed, last, work } = self;
         // The kernel goes on counting from ray to ray; the suites ask of each.
         *work = Work::default();
-        let mut memory = Following { slots: followed, last: *last };
-        if method.falls_back() {
-            let scratch = &mut newton.view_with(clips.view());
-            let answer = match method {
-                InView::NewtonProving => newton::closest_in_view(view, line, ray, limits, scratch, work),
-                InView::NewtonCoherentProving => {
-                    newton_coherent::closest_in_view(view, line, remembered, scan_line, ray, limits, scratch, work)
-                }
-                _ => newton_predicted::closest_in_view(view, line, &mut memory, scan_line, ray, limits, scratch, work),
-            };
-            *last = memory.last;
-            return answer;
-        }
-        let (scratch, room) = (&mut newton.view(), &mut clips.view());
+        let memory = &mut Following { slots: followed, last: *last };
         let answer = match method {
-            InView::Newton => newton::closest_in_view(view, line, ray, limits, scratch, work),
-            InView::NewtonCoherent => {
-                newton_coherent::closest_in_view(view, line, remembered, scan_line, ray, limits, scratch, work)
+            InView::NewtonPredicted => {
+                let scratch = &mut newton.view();
+                newton_predicted::closest_in_view(view, line, memory, scan_line, ray, limits, scratch, work)
             }
-            InView::NewtonPredicted
-            | InView::NewtonProving
-            | InView::NewtonCoherentProving
-            | InView::NewtonPredictedProving => {
-                newton_predicted::closest_in_view(view, line, &mut memory, scan_line, ray, limits, scratch, work)
-            }
-            InView::ClippingBare | InView::Clipping => clipping::closest_in_view(view, line, ray, limits, room, work),
-            InView::ClippingCoherent => {
-                clipping_coherent::closest_in_view(view, line, remembered, scan_line, ray, limits, room, work)
+            InView::NewtonPredictedProving => {
+                let scratch = &mut newton.view_with(clips.view());
+                newton_predicted::closest_in_view(view, line, memory, scan_line, ray, limits, scratch, work)
             }
             InView::ClippingPredicted => {
-                clipping_predicted::closest_in_view(view, line, &mut memory, scan_line, ray, limits, room, work)
+                let room = &mut clips.view();
+                clipping_predicted::closest_in_view(view, line, memory, scan_line, ray, limits, room, work)
             }
         };
         *last = memory.last;

@@ -3,26 +3,20 @@
 
 use crate::common::index;
 use crate::rooms::Thread;
-use patchray::method::{Followed, Remembered};
+use patchray::method::Followed;
 use patchray::point::Point;
 use patchray::scalar::Scalar;
 use patchray_host::scene::shapes::Random;
 
 /// Scalars in a slot before its stamp.
-const IN_FOLLOWED: usize = 7;
-const IN_REMEMBERED: usize = 2;
+const SCALARS: usize = 18;
 
 /// Rubbish in all slots: numbers that may be, that may not, NaN, infinities, and stamps that are those of `scan_line` by chance.
 pub(crate) fn fill<P: Point>(thread: &mut Thread<P>, scan_line: u32, random: &mut Random) {
     for slot in &mut thread.followed {
         let address: *mut Followed<P::Scalar> = slot;
-        // SAFETY: `Followed` is `repr(C)`, of seven scalars and a stamp, for which any bits are valid.
-        unsafe { write::<P::Scalar>(address.cast(), IN_FOLLOWED, scan_line, random) };
-    }
-    for slot in &mut thread.remembered {
-        let address: *mut Remembered<P::Scalar> = slot;
-        // SAFETY: `Remembered` is `repr(C)`, of two scalars and a stamp, for which any bits are valid.
-        unsafe { write::<P::Scalar>(address.cast(), IN_REMEMBERED, scan_line, random) };
+        // SAFETY: `Followed` is `repr(C)`, of so many scalars and a stamp, for which any bits are valid.
+        unsafe { write::<P::Scalar>(address.cast(), scan_line, random) };
     }
     thread.last = match index(random, 8) {
         0 => u32::MAX,
@@ -33,17 +27,17 @@ pub(crate) fn fill<P: Point>(thread: &mut Thread<P>, scan_line: u32, random: &mu
 }
 
 /// # Safety
-/// `slot` points to `count` scalars and a `u32`, which may be written.
-unsafe fn write<S: Scalar>(slot: *mut S, count: usize, scan_line: u32, random: &mut Random) {
+/// `slot` points to so many scalars and a `u32`, which may be written.
+unsafe fn write<S: Scalar>(slot: *mut S, scan_line: u32, random: &mut Random) {
     let likely = index(random, 3) > 0;
-    for k in 0..count {
-        let number = if likely && k < 2 { S::from_f64(random.within(0.0, 1.0)) } else { number(random) };
+    for k in 0..SCALARS {
+        let number = if likely && k < 4 { S::from_f64(random.within(0.0, 1.0)) } else { number(random) };
         // SAFETY: as above.
         unsafe { slot.add(k).write(number) };
     }
     let stamp = if index(random, 4) == 0 { bits(random) as u32 } else { scan_line.wrapping_add(1) };
     // SAFETY: as above.
-    unsafe { slot.add(count).cast::<u32>().write(stamp) };
+    unsafe { slot.add(SCALARS).cast::<u32>().write(stamp) };
 }
 
 fn bits(random: &mut Random) -> u64 {

@@ -1,28 +1,27 @@
 //! No line leaves out a patch that a ray of it meets: a span too narrow by rounding is a hole that no later step mends.
 //!
-//! Rays through known points of patches, corners and borders among them; and each patch whose box any ray meets.
-//! `PATCHRAY_RAYS=N` traces N rays per case and precision.
+//! Rays through known points of patches, corners and borders among them; and each patch that the line of the whole image leads
+//! to. `PATCHRAY_RAYS=N` traces N rays per case and precision.
 
 use crate::cameras::{cameras, inside, scaled};
 use crate::common::{Kind, Prepared, add, cross, dot, index, is_rational};
 use crate::corpus::{Case, cases};
 use crate::judging::rays_per_case;
-use crate::rooms::{InView, LineRoom, ViewRoom};
+use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
 use patchray::bernstein::Basis;
-use patchray::limits::{Limits, Work};
+use patchray::limits::Limits;
 use patchray::line::{Line, Window};
-use patchray::patch::Patch;
-use patchray::planes::Planes;
 use patchray::point::{Plain, Weighted};
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
-use patchray::span::Order;
+use patchray::story::Event;
 use patchray::subdivide::Subdivision;
-use patchray::sweep::Along;
+use patchray::told::{Listener, Told};
 use patchray::view::{Camera, View, ViewRay};
 use patchray_host::scene::model::ModelSurface;
 use patchray_host::scene::shapes::Random;
 use rayon::prelude::*;
+use std::cell::RefCell;
 
 /// Rays per case and precision, unless the environment says otherwise.
 const RAYS: usize = 3_000;
@@ -33,31 +32,43 @@ struct Count {
     rays: usize,
     /// Patches that rays were led to.
     led: usize,
-    /// Patches whose boxes rays meet before the eye, but that their lines do not hold.
+    /// Patches that the line of the whole image leads rays to, but their own lines do not.
     left_out: usize,
     /// Rays through a point of a patch whose line does not lead to that patch.
     refused: usize,
 }
 
-/// The patches that a line leads a ray to, by their domains and surfaces: each is told by where it lies.
+/// A part of a surface's domain: the least and the largest u, then v.
+type Sides = [[f64; 2]; 2];
+
+thread_local! {
+    static MET: RefCell<Vec<Sides>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Notes the patches that are met.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+struct Ear;
+
+impl Listener for Ear {
+    fn hear(event: Event) {
+        if let Event::Patch { sides, met: true } = event {
+            MET.with_borrow_mut(|all| all.push(sides));
+        }
+    }
+}
+
+/// The patches that a line leads a ray to and whose boxes the ray meets, each told by where it lies in its surface.
 fn led<P: Kind>(
+    thread: &mut Thread<P>,
     view: &View<'_, P>,
     line: &mut Line<'_, P::Scalar>,
     ray: &ViewRay<P::Scalar>,
-    mut planes_of: impl FnMut(&Planes<P::Scalar>, u32),
-) -> Vec<(u32, [[P::Scalar; 2]; 2])> {
-    let (limits, mut work) = (Limits { spans: u32::MAX, ..Limits::default() }, Work::default());
-    let mut found = Vec::new();
-    let answer = line.closest(view, ray, &limits, &mut work, |surface, planes, range, along, limits, work| {
-        planes_of(planes, surface.number);
-        along.ahead(planes, &range, limits, work, |patch, _, _| {
-            found.push((surface.number, patch.domain().bounds()));
-            Ok(P::Scalar::INFINITY)
-        })?;
-        Ok(None)
-    });
-    assert_eq!(answer, Ok(None));
-    found
+) -> Vec<Sides> {
+    let limits = Limits { spans: u32::MAX, ..Limits::default() };
+    MET.take();
+    // All lies before the ray's interval, so that nothing is found, and no patch is left out for being behind it.
+    assert_eq!(thread.trace(InView::NewtonPredicted, view, line, 0, ray, &limits), Ok(None));
+    MET.take()
 }
 
 /// The place of a point in a camera's image, which may be wider than ±1, if the point lies before the eye.
@@ -89,15 +100,17 @@ fn shoot<P: Kind>(case: &Case) -> Count {
     let each = rays_per_case(RAYS) / all.len();
     let of_camera = |&(seed, named): &(usize, crate::cameras::Named)| {
         let camera = scaled::<P::Scalar>(&named.camera, 1.0);
-        let mut room = ViewRoom::for_view(&prepared, true, &camera).unwrap();
-        // The turned patches, which the view keeps to itself.
-        room.build(&prepared, true, &camera).unwrap();
-        let turned: Vec<Patch<P::Scalar>> = room.patches.clone();
-        let view = room.build(&prepared, true, &camera).unwrap();
+        let mut room = ViewRoom::for_view(&prepared, &camera).unwrap();
+        let view = room.build(&prepared, &camera).unwrap();
         let mut random = Random(seed as u64);
         let (mut basis, mut line_room) = (Basis::<P::Scalar, 16>::new(), LineRoom::for_any(&prepared, 1 + seed * 30));
         let unscale = -prepared.scene().frame().exponent();
         let rows: Vec<_> = surfaces.iter().map(|surface| rows_of(&named.camera, surface)).collect();
+        let all = [P::Scalar::LEAST, P::Scalar::INFINITY];
+        let mut image_room = LineRoom::for_any(&prepared, 1);
+        let mut image = image_room.line(&view, Window { x: all, y: all }).unwrap();
+        let behind_all = Interval::new(P::Scalar::from_f64(1e6), P::Scalar::INFINITY).unwrap();
+        let mut thread = Thread::new(surfaces.len());
         let mut count = Count::default();
         for _ in 0..each {
             let surface = index(&mut random, surfaces.len());
@@ -115,33 +128,27 @@ fn shoot<P: Kind>(case: &Case) -> Count {
                 continue;
             };
             let place = place.map(P::Scalar::from_f64);
-            let Ok(ray) = view.ray(place, &Interval::ahead()) else { continue };
+            let Ok(ray) = view.ray(place, &behind_all) else { continue };
             let wide = P::Scalar::from_f64(random.within(0.0, 0.01));
             let x = if index(&mut random, 2) == 0 { [place[0]; 2] } else { [-P::Scalar::ONE, P::Scalar::ONE] };
             let window = Window { x, y: [place[1] - wide, place[1] + wide] };
-            let mut line = line_room.line(&view, InView::Newton, window).unwrap();
-            let mut planes = None;
-            let found = led(&view, &mut line, &ray, |of_ray, _| planes = Some(*of_ray));
-            let bounds = patch.domain().bounds();
+            let mut line = line_room.line(&view, window).unwrap();
+            let found = led(&mut thread, &view, &mut line, &ray);
             count.rays += 1;
             count.led += found.len();
-            count.refused += usize::from(!found.contains(&(surface as u32, bounds)));
-            // What brute force meets, wherever a line leads to anything at all.
-            let Some(planes) = planes else { continue };
-            // Depth 0 is the scene's middle; the eye is where t is 0.
-            for (number, slot) in turned.iter().enumerate() {
-                let ahead = |depth: P::Scalar| planes.t(depth) >= P::Scalar::ZERO;
-                let met = slot.bounds().crossing(&planes).is_some_and(|crossing| {
-                    crossing.pierces().is_some_and(|ends| ahead(ends[1].depth) && ends[0].depth <= ends[1].depth)
-                });
-                if met {
-                    // Its surface's number.
-                    let of = prepared.first.partition_point(|&first| first as usize <= number) as u32 - 1;
-                    let [low, high] = rows[of as usize];
-                    let seen = low <= window.y[1].to_f64() && window.y[0].to_f64() <= high;
-                    count.left_out += usize::from(seen && !found.contains(&(of, slot.domain().bounds())));
-                }
-            }
+            count.refused += usize::from(!found.contains(&patch.domain().bounds()));
+            // No loss if it is of a surface that is not seen here.
+            let unseen = |sides: &Sides| {
+                let mut of = rows
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, [low, high])| !(*low <= window.y[1].to_f64() && window.y[0].to_f64() <= *high));
+                of.any(|(k, _)| {
+                    patches.of_surface(k).unwrap().iter().any(|patch| patch.domain().bounds::<f64>() == *sides)
+                })
+            };
+            let in_image = led(&mut thread, &view, &mut image, &ray);
+            count.left_out += in_image.iter().filter(|sides| !found.contains(sides) && !unseen(sides)).count();
         }
         count
     };
@@ -155,12 +162,11 @@ fn shoot<P: Kind>(case: &Case) -> Count {
 
 #[test]
 fn no_line_leaves_out_what_a_ray_meets() {
-    assert_eq!(InView::Newton.order(), Order::Surfaces);
     for case in cases() {
         let [of_f32, of_f64] = if is_rational(&case.model) {
-            [shoot::<Weighted<f32>>(&case), shoot::<Weighted<f64>>(&case)]
+            [shoot::<Weighted<Told<f32, Ear>>>(&case), shoot::<Weighted<Told<f64, Ear>>>(&case)]
         } else {
-            [shoot::<Plain<f32>>(&case), shoot::<Plain<f64>>(&case)]
+            [shoot::<Plain<Told<f32, Ear>>>(&case), shoot::<Plain<Told<f64, Ear>>>(&case)]
         };
         println!("{}: f32 {of_f32:?}, f64 {of_f64:?}", case.name);
         for count in [of_f32, of_f64] {

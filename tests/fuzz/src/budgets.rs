@@ -58,14 +58,14 @@ impl OfKind for OfView {
     fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
         let OfView(method) = self;
         let surfaces = case.model.surfaces.len();
-        let Some(prepared) = prepare::<P>(&case.model, &any_subdivision(&mut bytes), Takes::in_view(method)) else {
+        let Some(prepared) = prepare::<P>(&case.model, &any_subdivision(&mut bytes), Takes::IN_VIEW) else {
             return;
         };
         let camera = in_kernel::<P::Scalar>(&case.camera(&mut bytes));
-        let Ok(mut room) = ViewRoom::for_view(&prepared, method.has_patches(), &camera) else {
+        let Ok(mut room) = ViewRoom::for_view(&prepared, &camera) else {
             return;
         };
-        let view = room.build(&prepared, method.has_patches(), &camera).expect("as was asked for");
+        let view = room.build(&prepared, &camera).expect("as was asked for");
         let [before, x, y] = [0; 3].map(|_| P::Scalar::from_f64(f64::from(bytes.byte() as i8) / 128.0));
         let one = P::Scalar::ONE;
         let window = Window { x: [-one, one], y: [y, y] };
@@ -76,19 +76,17 @@ impl OfKind for OfView {
         };
         let mut line_room = LineRoom::for_any(&prepared, 1 + bytes.below(20));
         let mut thread = Thread::<P>::new(surfaces);
-        scribble(&mut bytes, &mut thread.remembered);
         scribble(&mut bytes, &mut thread.followed);
         thread.last = bytes.count();
         let scan_line = bytes.count();
-        let mut line = line_room.line(&view, method, window).expect("as many spans as there can be");
+        let mut line = line_room.line(&view, window).expect("as many spans as there can be");
         let _ = thread.trace(method, &view, &mut line, scan_line, &first, &any_limits(&mut bytes));
-        let (remembered, followed, last) = (thread.remembered.clone(), thread.followed.clone(), thread.last);
-        larger_and_smaller(&mut bytes, range, surfaces, method, method.remembers(), |limits| {
-            thread.remembered.clone_from(&remembered);
+        let (followed, last) = (thread.followed.clone(), thread.last);
+        larger_and_smaller(&mut bytes, range, surfaces, method, true, |limits| {
             thread.followed.clone_from(&followed);
             thread.last = last;
             // The list of a line is of the rays before, too: each call begins with the same.
-            let mut line = line_room.line(&view, method, window).expect("as before");
+            let mut line = line_room.line(&view, window).expect("as before");
             let answer = thread.trace(method, &view, &mut line, scan_line, &ray, limits);
             (answer, thread.work)
         });

@@ -94,11 +94,10 @@ impl OfKind for Preparation {
         lend(&mut bytes, |sizes| over.build(surfaces, &patches, &grid_options, sizes));
 
         let camera = in_kernel::<P::Scalar>(&case.camera(&mut bytes));
-        let with_patches = (!bytes.rarely(4)).then_some(&patches);
         let mut of_view = ViewRoom::<P>::sized([0; 6]);
         let seen = lend(&mut bytes, |sizes| {
             of_view = ViewRoom::sized(sizes);
-            match View::build(&scene, with_patches, &camera, of_view.lend()) {
+            match View::build(&scene, Some(&patches), &camera, of_view.lend()) {
                 Ok(_) => Stage::Done,
                 Err(ViewError::Memory(needs)) => {
                     let given =
@@ -110,21 +109,16 @@ impl OfKind for Preparation {
             }
         });
         let Some(view) =
-            seen.then(|| View::build(&scene, with_patches, &camera, of_view.lend()).expect("it was built before"))
+            seen.then(|| View::build(&scene, Some(&patches), &camera, of_view.lend()).expect("it was built before"))
         else {
             return;
         };
         let mut end = || number::<P::Scalar>(&mut bytes);
         let window = Window { x: [end(), end()], y: [end(), end()] };
-        let order = if bytes.rarely(2) { Order::Depth } else { Order::Surfaces };
         lend(&mut bytes, |[spans, active, buckets]| {
             let (mut room, mut others) = (LineRoom::sized(spans, buckets), vec![7; active]);
             let memory = LineMemory { active: &mut others, ..room.lend() };
-            let line = match with_patches {
-                Some(_) => Line::of_patches(&view, window, order, memory),
-                None => Line::of_surfaces(&view, window, memory),
-            };
-            match line {
+            match Line::of_patches(&view, window, Order::Depth, memory) {
                 Ok(_) => Stage::Done,
                 Err(LineNeeds { spans, active, buckets }) => Stage::Lacks([spans, active, buckets]),
             }

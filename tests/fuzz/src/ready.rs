@@ -1,7 +1,6 @@
 //! Preparation that may be refused: asked for its needs, given just that, and then it has to succeed.
 
 use crate::common::{Kind, Prepared, lower, subdivide_scratch};
-use crate::rooms::InView;
 use patchray::arena::Need;
 use patchray::frame::{Aabb, exact_origin};
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
@@ -179,10 +178,8 @@ pub(crate) struct Takes {
 }
 
 impl Takes {
-    /// What a method for the rays of a view takes.
-    pub(crate) fn in_view(method: InView) -> Takes {
-        Takes { patches: method.has_patches(), ..Takes::default() }
-    }
+    /// What the methods for the rays of a view take.
+    pub(crate) const IN_VIEW: Takes = Takes { patches: true, tree: false, grids: false };
 }
 
 /// A model with what a method takes; `None` if the kernel refuses it.

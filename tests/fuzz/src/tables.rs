@@ -33,7 +33,7 @@ pub(crate) fn check(bytes: &[u8]) {
 fn any_bits<P: Kind + Slot>(case: &Case, method: usize, mut bytes: Bytes<'_>) {
     let way = Way::ALL.get(method).copied();
     let in_view = InView::ALL[method.saturating_sub(Way::ALL.len())];
-    let takes = way.map_or(Takes::in_view(in_view), Way::takes);
+    let takes = way.map_or(Takes::IN_VIEW, Way::takes);
     let Some(mut prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes), takes) else {
         return;
     };
@@ -99,16 +99,16 @@ fn of_view<P: Kind>(
     limits: &Limits<P::Scalar>,
     surfaces: usize,
 ) {
-    let Ok(mut room) = ViewRoom::for_view(prepared, method.has_patches(), camera) else {
+    let Ok(mut room) = ViewRoom::for_view(prepared, camera) else {
         return;
     };
-    let Ok(view) = room.build(prepared, method.has_patches(), camera) else {
+    let Ok(view) = room.build(prepared, camera) else {
         return;
     };
     let one = P::Scalar::ONE;
     let window = Window { x: [-one, one], y: [P::Scalar::ZERO; 2] };
     let mut line_room = LineRoom::for_any(prepared, 5);
-    let Ok(mut line) = line_room.line(&view, method, window) else {
+    let Ok(mut line) = line_room.line(&view, window) else {
         return;
     };
     let mut thread = Thread::<P>::new(surfaces);

@@ -1,10 +1,12 @@
 //! Views and their scan lines: any surfaces, cameras, windows and limits, and coherence memory of any bits, through the methods
-//! for the rays of a view, one at a time; one that proves what it answers beside its original, both held against the oracle.
+//! for the rays of a view, one at a time; one that proves what it answers beside its original, which traces ray by ray, both held
+//! against the oracle.
 
 use crate::bytes::Bytes;
 use crate::claims::{in_range, on_the_ray, within_limits, within_worst_case};
-use crate::common::Kind;
-use crate::input::{Case, OfKind, any_limits, in_kernel, limits, number, subdivision, with_kind};
+use crate::common::{Kind, Prepared};
+use crate::input::{Case, OfKind, any_limits, in_kernel, interval, limits, number, subdivision, with_kind};
+use crate::lane::{Lane, Way};
 use crate::ready::{Takes, prepare};
 use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
 use crate::scribble::scribble;
@@ -14,7 +16,6 @@ use patchray::line::Window;
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
 use patchray_host::scene::rays::RayLine;
-use patchray_host::scene::trace::Method;
 
 pub(crate) fn check(bytes: &[u8]) {
     let mut bytes = Bytes::new(bytes);
@@ -25,16 +26,18 @@ pub(crate) fn check(bytes: &[u8]) {
 
 struct Views(InView);
 
-/// Whether a method answers rightly whatever the ray meets, as far as numbers can tell, if it is asked to prove it.
-fn proves(method: InView) -> bool {
-    !matches!(method, InView::Newton | InView::NewtonCoherent | InView::NewtonPredicted)
-}
-
 impl OfKind for Views {
     fn run<P: Kind>(self, case: &Case, mut bytes: Bytes<'_>) {
         let Views(method) = self;
         let surfaces = case.model.surfaces.len();
-        let Some(prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes), Takes::in_view(method)) else {
+        // The original of a method that answers rightly whatever the ray meets, if it is asked to prove it.
+        let original = match method {
+            InView::NewtonPredicted => None,
+            InView::ClippingPredicted => Some(Way::Clipping),
+            InView::NewtonPredictedProving => Some(Way::NewtonProving),
+        };
+        let takes = if original == Some(Way::NewtonProving) { Way::NewtonProving.takes() } else { Takes::IN_VIEW };
+        let Some(prepared) = prepare::<P>(&case.model, &subdivision(&mut bytes), takes) else {
             return;
         };
         let camera = case.camera(&mut bytes);
@@ -62,77 +65,80 @@ impl OfKind for Views {
             places.push([x + P::Scalar::from_f64(step), y]);
         }
         let mut thread = Thread::<P>::new(surfaces);
-        scribble(&mut bytes, &mut thread.remembered);
         scribble(&mut bytes, &mut thread.followed);
         thread.last = bytes.count();
         let at_hand = camera.eye.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let lines: Vec<_> = places.iter().map(|&place| ray_line(&camera, place, &interval)).collect();
-        let proving = compared && proves(method);
-        let truths: Vec<_> = lines.iter().filter(|_| proving).map(|line| Truth::new(case, line, at_hand)).collect();
-        // Which of the rays the original answers, for the method that is made of it.
-        let mut answered = vec![false; places.len()];
-        let both = [original(method).unwrap_or(InView::ClippingBare), method];
-        for &method in if proving { &both[..] } else { &both[1..] } {
-            let Ok(mut room) = ViewRoom::for_view(&prepared, method.has_patches(), &in_kernel) else {
-                return;
+        let original = original.filter(|_| compared);
+        let Ok(mut room) = ViewRoom::for_view(&prepared, &in_kernel) else {
+            return;
+        };
+        let view = room.build(&prepared, &in_kernel).expect("as was asked for");
+        let asked = LineRoom::sized(0, 0).line(&view, window).map(|_| ()).expect_err("buckets are needed");
+        let spans = asked.spans.needed;
+        let mut line_room = LineRoom::sized(spans, buckets);
+        let mut line = line_room.line(&view, window).expect("as was asked for");
+        let extent = Extent {
+            surfaces: surfaces as u32,
+            patches: prepared.patches.len() as u32,
+            spans: spans as u32,
+            walks: 2,
+            clipped: match method {
+                InView::NewtonPredicted => false,
+                InView::ClippingPredicted => true,
+                InView::NewtonPredictedProving => limits.acceptance == Acceptance::Proved,
+            },
+            ..Extent::default()
+        };
+        let mut lane = Lane::<P>::new(surfaces);
+        for place in places {
+            let ray_line = ray_line(&camera, place, &interval);
+            let Ok(ray) = view.ray(place, &interval) else {
+                continue;
             };
-            let view = room.build(&prepared, method.has_patches(), &in_kernel).expect("as was asked for");
-            let asked = LineRoom::sized(0, 0).line(&view, method, window).map(|_| ()).expect_err("buckets are needed");
-            let spans = asked.spans.needed;
-            let mut line_room = LineRoom::sized(spans, buckets);
-            let mut line = line_room.line(&view, method, window).expect("as was asked for");
-            let clips = matches!(method.judged_as(), Method::Clipping | Method::ClippingCoherent);
-            let extent = Extent {
-                surfaces: surfaces as u32,
-                patches: if method.has_patches() { prepared.patches.len() as u32 } else { 0 },
-                spans: spans as u32,
-                walks: if method.remembers() { 2 } else { 0 },
-                clipped: clips || method.falls_back() && limits.acceptance == Acceptance::Proved,
-                ..Extent::default()
+            let kept = (thread.followed.clone(), thread.last);
+            let mut trace = |limits: &Limits<P::Scalar>| {
+                // Memory as it was: what a search leaves there would help the next.
+                thread.followed.clone_from(&kept.0);
+                thread.last = kept.1;
+                let answer = thread.trace(method, &view, &mut line, scan_line, &ray, limits);
+                within_limits(&thread.work, limits, method);
+                within_worst_case(&thread.work, limits, &extent, method);
+                answer
             };
-            for (k, (&place, ray_line)) in places.iter().zip(&lines).enumerate() {
-                let Ok(ray) = view.ray(place, &interval) else {
-                    continue;
-                };
-                let kept = (thread.remembered.clone(), thread.followed.clone(), thread.last);
-                let mut trace = |limits: &Limits<P::Scalar>| {
-                    // Memory as it was: what a search leaves there would help the next.
-                    thread.remembered.clone_from(&kept.0);
-                    thread.followed.clone_from(&kept.1);
-                    thread.last = kept.2;
-                    let answer = thread.trace(method, &view, &mut line, scan_line, &ray, limits);
-                    within_limits(&thread.work, limits, method);
-                    within_worst_case(&thread.work, limits, &extent, method);
-                    answer
-                };
-                let answer = match truths.get(k) {
-                    Some(truth) => {
-                        let bound = answered[k] && original(method).is_some();
-                        truth.judged(&format!("{method:?}"), &limits, bound, trace)
-                    }
-                    None => trace(&limits),
-                };
-                answered[k] = answer.is_ok();
-                if let Some(hit) = answer.unwrap_or_else(|gave_up| gave_up.best) {
-                    let ahead = interval.min().greater(P::Scalar::ZERO);
-                    in_range(&hit, [ahead, interval.max()], surfaces, method);
-                    if case.is_tame() {
-                        on_the_ray(&hit, case, ray_line, &limits, at_hand, method);
-                    }
+            let answer = match original {
+                Some(original) => {
+                    let truth = Truth::new(case, &ray_line, at_hand);
+                    let answered = alone(&mut lane, original, &prepared, &ray_line, &truth, &limits);
+                    truth.judged(&format!("{method:?}"), &limits, answered, trace)
+                }
+                None => trace(&limits),
+            };
+            if let Some(hit) = answer.unwrap_or_else(|gave_up| gave_up.best) {
+                let ahead = interval.min().greater(P::Scalar::ZERO);
+                in_range(&hit, [ahead, interval.max()], surfaces, method);
+                if case.is_tame() {
+                    on_the_ray(&hit, case, &ray_line, &limits, at_hand, method);
                 }
             }
         }
     }
 }
 
-/// The method without memory that a coherent or predicted one is made of.
-fn original(method: InView) -> Option<InView> {
-    match method {
-        InView::NewtonCoherent | InView::NewtonPredicted => Some(InView::Newton),
-        InView::ClippingCoherent | InView::ClippingPredicted => Some(InView::Clipping),
-        InView::NewtonCoherentProving | InView::NewtonPredictedProving => Some(InView::NewtonProving),
-        _ => None,
-    }
+/// Judges a ray by the original method, which traces it by itself; whether it answers.
+fn alone<P: Kind>(
+    lane: &mut Lane<P>,
+    way: Way,
+    prepared: &Prepared<P>,
+    line: &RayLine,
+    truth: &Truth<'_>,
+    limits: &Limits<P::Scalar>,
+) -> bool {
+    let [origin, direction] = [line.origin, line.direction].map(|v| v.map(P::Scalar::from_f64));
+    let (Ok(ray), Some(interval)) = (prepared.scene().ray(origin, direction), interval(line)) else {
+        return false;
+    };
+    let trace = |limits: &Limits<P::Scalar>| lane.closest(way, prepared, 0, &ray, &interval, limits);
+    truth.judged(&format!("{way:?}"), limits, false, trace).is_ok()
 }
 
 /// The ray of a place, as the oracle takes it.

@@ -96,7 +96,7 @@ impl<S: Scalar> LentPatches<S> {
 
     /// # Safety
     /// See [`Lent::slots`].
-    unsafe fn tree<'m>(&self) -> Tree<'m, S> {
+    pub(crate) unsafe fn tree<'m>(&self) -> Tree<'m, S> {
         // SAFETY: the caller keeps the contract of `slots`.
         unsafe { Tree::new(self.nodes.slots(), self.links.slots()) }
     }
@@ -114,7 +114,7 @@ pub struct LentGrids<S> {
 impl<S: Scalar> LentGrids<S> {
     /// # Safety
     /// See [`Lent::slots`].
-    unsafe fn view<'m>(&self) -> Grids<'m, S> {
+    pub(crate) unsafe fn view<'m>(&self) -> Grids<'m, S> {
         // SAFETY: the caller keeps the contract of `slots`.
         unsafe { Grids::new(self.grids.slots(), self.offsets.slots(), self.references.slots()) }
     }
@@ -130,7 +130,7 @@ pub struct Asked<S> {
 }
 
 impl<S: Scalar> Asked<S> {
-    fn ray<P: Point<Scalar = S>>(&self, scene: &Scene<'_, P>) -> Result<(Ray<S>, Interval<S>), RayError> {
+    pub(crate) fn ray<P: Point<Scalar = S>>(&self, scene: &Scene<'_, P>) -> Result<(Ray<S>, Interval<S>), RayError> {
         let [min, max] = self.interval;
         let interval = Interval::new(min, max).unwrap_or(Interval::ahead());
         Ok((scene.ray(self.origin, self.direction)?, interval))

@@ -1,13 +1,14 @@
-//! The entry points of Newton's methods that fall back on clipping, for the rays of a view.
+//! The entry points of Newton's methods that fall back on clipping.
 
 use crate::Lent;
-use crate::entries::{Found, ORDER, PENDING, POINTS};
+use crate::entries::{Asked, Found, LentGrids, LentPatches, LentScene, ORDER, PENDING, POINTS};
 use patchray::limits::{Limits, Work};
 use patchray::line::Line;
 use patchray::method::{
     ClipScratch, Followed, Following, Remembered, Scratch, newton, newton_coherent, newton_predicted,
 };
 use patchray::point::Point;
+use patchray::ray::RayError;
 use patchray::view::{View, ViewRay};
 
 /// What a ray needs.
@@ -18,35 +19,45 @@ pub struct Room<P: Point> {
     clips: ClipScratch<P, ORDER, POINTS, PENDING>,
 }
 
-extern "C" fn proving_newton<P: Point>(
-    view: &View<'static, P>,
-    line: &mut Line<'static, P::Scalar>,
-    ray: &ViewRay<P::Scalar>,
+/// # Safety
+/// See [`Lent::slots`].
+unsafe extern "C" fn proving_newton<P: Point>(
+    scene: &LentScene<P>,
+    patches: &LentPatches<P::Scalar>,
+    asked: &Asked<P::Scalar>,
     limits: &Limits<P::Scalar>,
     Room { newton, clips }: &mut Room<P>,
     work: &mut Work,
-    out: &mut Found<P::Scalar>,
+    out: &mut Result<Found<P::Scalar>, RayError>,
 ) {
-    *out = newton::closest_in_view(view, line, ray, limits, &mut newton.view_with(clips.view()), work);
+    // SAFETY: the caller keeps the contract of `slots`.
+    let (scene, tree, patches) = unsafe { (scene.view(), patches.tree(), patches.patches()) };
+    *out = asked.ray(&scene).map(|(ray, interval)| {
+        let scratch = &mut newton.view_with(clips.view());
+        newton::closest(&scene, &patches, &tree, &ray, &interval, limits, scratch, work)
+    });
 }
 
 /// # Safety
 /// See [`Lent::slots`].
 unsafe extern "C" fn proving_coherent<P: Point>(
-    view: &View<'static, P>,
-    line: &mut Line<'static, P::Scalar>,
+    scene: &LentScene<P>,
+    patches: &LentPatches<P::Scalar>,
+    grids: &LentGrids<P::Scalar>,
     memory: &Lent<Remembered<P::Scalar>>,
     scan_line: u32,
-    ray: &ViewRay<P::Scalar>,
+    asked: &Asked<P::Scalar>,
     limits: &Limits<P::Scalar>,
     Room { newton, clips }: &mut Room<P>,
     work: &mut Work,
-    out: &mut Found<P::Scalar>,
+    out: &mut Result<Found<P::Scalar>, RayError>,
 ) {
     // SAFETY: the caller keeps the contract of `slots`.
-    let memory = unsafe { memory.slots() };
-    let scratch = &mut newton.view_with(clips.view());
-    *out = newton_coherent::closest_in_view(view, line, memory, scan_line, ray, limits, scratch, work);
+    let (scene, patches, grids, memory) = unsafe { (scene.view(), patches.patches(), grids.view(), memory.slots()) };
+    *out = asked.ray(&scene).map(|(ray, interval)| {
+        let scratch = &mut newton.view_with(clips.view());
+        newton_coherent::closest(&scene, &patches, &grids, memory, scan_line, &ray, &interval, limits, scratch, work)
+    });
 }
 
 /// # Safety

@@ -4,10 +4,7 @@ use crate::Lent;
 use crate::entries::{Found, LentPatches, LentScene, ORDER, PENDING, POINTS};
 use patchray::limits::{Limits, Work};
 use patchray::line::{Line, LineMemory, LineNeeds, Window};
-use patchray::method::{
-    ClipScratch, Followed, Following, Remembered, Scratch, clipping, clipping_coherent, clipping_predicted, newton,
-    newton_coherent, newton_predicted,
-};
+use patchray::method::{ClipScratch, Followed, Following, Scratch, clipping_predicted, newton_predicted};
 use patchray::patch::Patch;
 use patchray::point::Point;
 use patchray::ray::{Interval, RayError};
@@ -63,14 +60,13 @@ impl<S: Scalar> LentLine<S> {
 unsafe extern "C" fn view<P: Point>(
     scene: &LentScene<P>,
     patches: &LentPatches<P::Scalar>,
-    with_patches: bool,
     camera: &Camera<P::Scalar>,
     memory: &LentView<P>,
     out: &mut Result<View<'static, P>, ViewError>,
 ) {
     // SAFETY: the caller keeps the contract of `slots`.
     let (scene, patches, memory) = unsafe { (scene.view(), patches.patches(), memory.memory()) };
-    *out = View::build(&scene, with_patches.then_some(&patches), camera, memory);
+    *out = View::build(&scene, Some(&patches), camera, memory);
 }
 
 extern "C" fn view_ray<P: Point>(
@@ -84,62 +80,19 @@ extern "C" fn view_ray<P: Point>(
 
 /// # Safety
 /// See [`Lent::slots`].
-unsafe extern "C" fn line_surfaces<P: Point>(
+unsafe extern "C" fn line<P: Point>(
     view: &View<'static, P>,
     window: &Window<P::Scalar>,
     memory: &LentLine<P::Scalar>,
     out: &mut Result<Line<'static, P::Scalar>, LineNeeds>,
 ) {
     // SAFETY: the caller keeps the contract of `slots`.
-    *out = Line::of_surfaces(view, *window, unsafe { memory.memory() });
+    *out = Line::of_patches(view, *window, Order::Depth, unsafe { memory.memory() });
 }
 
 /// # Safety
 /// See [`Lent::slots`].
-unsafe extern "C" fn line_patches<P: Point>(
-    view: &View<'static, P>,
-    window: &Window<P::Scalar>,
-    order: &Order,
-    memory: &LentLine<P::Scalar>,
-    out: &mut Result<Line<'static, P::Scalar>, LineNeeds>,
-) {
-    // SAFETY: the caller keeps the contract of `slots`.
-    *out = Line::of_patches(view, *window, *order, unsafe { memory.memory() });
-}
-
-extern "C" fn seen_newton<P: Point>(
-    view: &View<'static, P>,
-    line: &mut Line<'static, P::Scalar>,
-    ray: &ViewRay<P::Scalar>,
-    limits: &Limits<P::Scalar>,
-    scratch: &mut Scratch<P, ORDER, POINTS>,
-    work: &mut Work,
-    out: &mut Found<P::Scalar>,
-) {
-    *out = newton::closest_in_view(view, line, ray, limits, &mut scratch.view(), work);
-}
-
-/// # Safety
-/// See [`Lent::slots`].
-unsafe extern "C" fn seen_coherent<P: Point>(
-    view: &View<'static, P>,
-    line: &mut Line<'static, P::Scalar>,
-    memory: &Lent<Remembered<P::Scalar>>,
-    scan_line: u32,
-    ray: &ViewRay<P::Scalar>,
-    limits: &Limits<P::Scalar>,
-    scratch: &mut Scratch<P, ORDER, POINTS>,
-    work: &mut Work,
-    out: &mut Found<P::Scalar>,
-) {
-    // SAFETY: the caller keeps the contract of `slots`.
-    let memory = unsafe { memory.slots() };
-    *out = newton_coherent::closest_in_view(view, line, memory, scan_line, ray, limits, &mut scratch.view(), work);
-}
-
-/// # Safety
-/// See [`Lent::slots`].
-unsafe extern "C" fn seen_predicted<P: Point>(
+unsafe extern "C" fn seen_newton<P: Point>(
     view: &View<'static, P>,
     line: &mut Line<'static, P::Scalar>,
     memory: &Lent<Followed<P::Scalar>>,
@@ -158,39 +111,9 @@ unsafe extern "C" fn seen_predicted<P: Point>(
     *last = memory.last;
 }
 
-extern "C" fn seen_clipping<P: Point>(
-    view: &View<'static, P>,
-    line: &mut Line<'static, P::Scalar>,
-    ray: &ViewRay<P::Scalar>,
-    limits: &Limits<P::Scalar>,
-    scratch: &mut ClipScratch<P, ORDER, POINTS, PENDING>,
-    work: &mut Work,
-    out: &mut Found<P::Scalar>,
-) {
-    *out = clipping::closest_in_view(view, line, ray, limits, &mut scratch.view(), work);
-}
-
 /// # Safety
 /// See [`Lent::slots`].
-unsafe extern "C" fn seen_clipping_coherent<P: Point>(
-    view: &View<'static, P>,
-    line: &mut Line<'static, P::Scalar>,
-    memory: &Lent<Remembered<P::Scalar>>,
-    scan_line: u32,
-    ray: &ViewRay<P::Scalar>,
-    limits: &Limits<P::Scalar>,
-    scratch: &mut ClipScratch<P, ORDER, POINTS, PENDING>,
-    work: &mut Work,
-    out: &mut Found<P::Scalar>,
-) {
-    // SAFETY: the caller keeps the contract of `slots`.
-    let memory = unsafe { memory.slots() };
-    *out = clipping_coherent::closest_in_view(view, line, memory, scan_line, ray, limits, &mut scratch.view(), work);
-}
-
-/// # Safety
-/// See [`Lent::slots`].
-unsafe extern "C" fn seen_clipping_predicted<P: Point>(
+unsafe extern "C" fn seen_clipping<P: Point>(
     view: &View<'static, P>,
     line: &mut Line<'static, P::Scalar>,
     memory: &Lent<Followed<P::Scalar>>,
@@ -209,7 +132,4 @@ unsafe extern "C" fn seen_clipping_predicted<P: Point>(
     *last = memory.last;
 }
 
-export! {
-    view view_ray line_surfaces line_patches seen_newton seen_coherent seen_predicted seen_clipping seen_clipping_coherent
-    seen_clipping_predicted
-}
+export! { view view_ray line seen_newton seen_clipping }

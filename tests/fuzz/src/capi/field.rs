@@ -183,16 +183,6 @@ impl<'f, 'c, 'b> Call<'f, 'c, 'b> {
         (first, count)
     }
 
-    /// How many pieces were named.
-    pub(super) fn len(&self) -> usize {
-        self.named.len()
-    }
-
-    /// Forgets all pieces but the first ones.
-    pub(super) fn truncate(&mut self, len: usize) {
-        self.named.truncate(len);
-    }
-
     /// As many, or fewer, or more than any memory holds.
     pub(super) fn fewer_or_endless(&mut self, count: usize) -> usize {
         match self.bytes.below(16) {

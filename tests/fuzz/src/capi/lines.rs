@@ -10,40 +10,30 @@ use crate::lent_lines::{Arguments, Views};
 use crate::ready::{Takes, prepare_within};
 use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
 use crate::scribble::{Slot, scribble};
-use core::ptr::null;
 use patchray::capi::*;
 use patchray::line::Window;
-use patchray::method::{Followed, Remembered};
+use patchray::method::Followed;
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
 use patchray::view::{Camera, ViewError};
 use std::ops::Range;
 
 /// The functions: a view's preparation, and lines.
-pub(super) const FUNCTIONS: u8 = 7;
+pub(super) const FUNCTIONS: u8 = 3;
 
 /// In the order of [`Views::LINES`].
-const METHODS: [InView; 6] = [
-    InView::Clipping,
-    InView::Newton,
-    InView::ClippingCoherent,
-    InView::NewtonCoherent,
-    InView::ClippingPredicted,
-    InView::NewtonPredicted,
-];
+const METHODS: [InView; 2] = [InView::ClippingPredicted, InView::NewtonPredicted];
 
 /// What a view or a line of it is made of.
 pub(super) struct Lines<P: Views> {
     prepared: Prepared<P>,
     camera_in_rust: Camera<P::Scalar>,
     camera: *mut patchray_camera<P::Scalar>,
-    patches: bool,
     view_memory: *mut patchray_view_memory<P::Scalar>,
     view: *mut patchray_view<P::Scalar>,
     line: *mut patchray_line<P::Scalar>,
     line_memory: *mut patchray_line_memory<P::Scalar>,
-    /// Slots of the method's kind.
-    memory: *mut u64,
+    memory: *mut patchray_followed<P::Scalar>,
     memory_len: usize,
     hits: *mut patchray_hit<P::Scalar>,
     codes: *mut i32,
@@ -60,10 +50,8 @@ impl<P: Views + Kind + Slot> Lines<P> {
     /// What a function takes, in a field; `None` if the field does not hold it, or nothing can be prepared.
     pub(super) fn of(case: &Case, function: usize, field: &mut Field, bytes: &mut Bytes<'_>) -> Option<Self> {
         let method = function.checked_sub(1);
-        // Of one in eight lines by clipping there are none.
-        let patches = !(method.is_none_or(|method| method == 0) && bytes.rarely(3));
-        // With scene and patches made ready, as for `newton`, or a scene alone, as for `clipping`.
-        let prepared = Prepared::<P>::of(case, if patches { 5 } else { 3 }, field, bytes)?;
+        // With scene and patches made ready, as for `newton`.
+        let prepared = Prepared::<P>::of(case, 5, field, bytes)?;
         if prepared.stopped.is_some() {
             return None;
         }
@@ -94,7 +82,6 @@ impl<P: Views + Kind + Slot> Lines<P> {
             Lines {
                 camera_in_rust,
                 camera: field.put(patchray_camera { eye, forward, right, up })?,
-                patches,
                 view_memory: field.put(core::mem::zeroed())?,
                 view: field.put(core::mem::zeroed())?,
                 line: field.put(line)?,
@@ -111,18 +98,10 @@ impl<P: Views + Kind + Slot> Lines<P> {
                 prepared,
             }
         };
-        // SAFETY: there are so many slots of either kind.
-        unsafe {
-            let slots = core::slice::from_raw_parts_mut(lines.memory.cast(), surfaces);
-            slots.fill(Followed::<P::Scalar>::EMPTY);
-            if method.is_some_and(|method| method < 4) {
-                let slots = core::slice::from_raw_parts_mut(lines.memory.cast(), surfaces);
-                slots.fill(Remembered::<P::Scalar>::EMPTY);
-                scribble(bytes, slots);
-            } else {
-                scribble(bytes, slots);
-            }
-        }
+        // SAFETY: there are so many slots, laid out alike.
+        let slots = unsafe { core::slice::from_raw_parts_mut(lines.memory.cast(), surfaces) };
+        slots.fill(Followed::<P::Scalar>::EMPTY);
+        scribble(bytes, slots);
         lines.look(field, bytes)?;
         Some(lines)
     }
@@ -147,7 +126,7 @@ impl<P: Views + Kind + Slot> Lines<P> {
                 return Some(());
             }
             assert_eq!(self.build(), PATCHRAY_OK, "a view with what it asked for");
-            let spans = memory.patches_len.max(memory.surfaces_len);
+            let spans = memory.patches_len;
             let line = &mut *self.line_memory;
             (line.spans, line.spans_len) = (field.take(spans)?, spans);
             (line.active, line.active_len) = (field.take(spans)?, spans);
@@ -158,9 +137,8 @@ impl<P: Views + Kind + Slot> Lines<P> {
     }
 
     unsafe fn build(&self) -> i32 {
-        let patches = if self.patches { self.prepared.patches.cast_const() } else { null() };
         // SAFETY: the caller's.
-        unsafe { P::VIEW(self.prepared.scene, patches, self.camera, self.view_memory, self.view) }
+        unsafe { P::VIEW(self.prepared.scene, self.prepared.patches, self.camera, self.view_memory, self.view) }
     }
 
     /// Calls the function.
@@ -202,15 +180,7 @@ impl<P: Views + Kind + Slot> Lines<P> {
         // SAFETY: the caller's.
         unsafe {
             self.prepared.spoil_scene(call);
-            if self.patches {
-                let before = call.len();
-                self.prepared.spoil_patches(call);
-                // Null says that there are none.
-                self.patches = !self.prepared.patches.is_null();
-                if !self.patches {
-                    call.truncate(before);
-                }
-            }
+            self.prepared.spoil_patches(call);
             self.camera = call.one(self.camera, false);
             let memory = &mut *self.view_memory;
             (memory.points, memory.points_len) = call.slots::<_, P>(memory.points, memory.points_len, true);
@@ -266,18 +236,7 @@ impl<P: Views + Kind + Slot> Lines<P> {
         (memory.active, memory.active_len) = call.many(memory.active, memory.active_len, true);
         (memory.buckets, memory.buckets_len) = call.many(memory.buckets, memory.buckets_len, true);
         self.line_memory = call.holder(self.line_memory, true);
-        let memory = self.memory;
-        match self.method {
-            Some(2 | 3) => {
-                let (slots, len) = call.many(memory.cast::<Remembered<P::Scalar>>(), self.memory_len, true);
-                (self.memory, self.memory_len) = (slots.cast(), len);
-            }
-            Some(4 | 5) => {
-                let (slots, len) = call.many(memory.cast::<Followed<P::Scalar>>(), self.memory_len, true);
-                (self.memory, self.memory_len) = (slots.cast(), len);
-            }
-            _ => {}
-        }
+        (self.memory, self.memory_len) = call.many(self.memory, self.memory_len, true);
         let prepared = &mut self.prepared;
         prepared.limits = call.bounds_if_any(prepared.limits);
         (prepared.scratch, prepared.scratch_words) = call.many(prepared.scratch, prepared.scratch_words, true);
@@ -326,11 +285,11 @@ impl<P: Views + Kind + Slot> Lines<P> {
     pub(super) fn as_in_rust(&mut self, case: &Case) {
         // SAFETY: all is in its place, here and below.
         let subdivision = unsafe { self.prepared.subdivision() };
-        let takes = Takes { patches: self.patches, tree: self.patches, grids: false };
+        let takes = Takes { patches: true, tree: true, grids: false };
         let Some(prepared) = prepare_within::<P>(&case.model, &subdivision, VOXELS, takes) else {
             panic!("it is prepared in C");
         };
-        let room = ViewRoom::for_view(&prepared, self.patches, &self.camera_in_rust);
+        let room = ViewRoom::for_view(&prepared, &self.camera_in_rust);
         if let Some(code) = self.stopped {
             let error = room.map(|_| ()).expect_err("in C there is none");
             let fits = match error {
@@ -343,16 +302,12 @@ impl<P: Views + Kind + Slot> Lines<P> {
             return;
         }
         let mut room = room.expect("there is one in C");
-        let view = room.build(&prepared, self.patches, &self.camera_in_rust).expect("as was asked for");
+        let view = room.build(&prepared, &self.camera_in_rust).expect("as was asked for");
         let surfaces = case.model.surfaces.len();
         let mut thread = Thread::<P>::new(surfaces);
         // SAFETY: slots are laid out alike.
         unsafe {
-            if self.method.is_some_and(|method| method < 4) {
-                thread.remembered.copy_from_slice(core::slice::from_raw_parts(self.memory.cast(), surfaces));
-            } else {
-                thread.followed.copy_from_slice(core::slice::from_raw_parts(self.memory.cast(), surfaces));
-            }
+            thread.followed.copy_from_slice(core::slice::from_raw_parts(self.memory.cast(), surfaces));
         }
         thread.last = u32::MAX;
         // SAFETY: all is in its place.
@@ -369,9 +324,9 @@ impl<P: Views + Kind + Slot> Lines<P> {
             return assert_eq!(code, PATCHRAY_RAY_INTERVAL);
         };
         assert_eq!(code, PATCHRAY_OK);
-        let method = if self.patches { METHODS[method] } else { InView::ClippingBare };
+        let method = METHODS[method];
         let mut lines = LineRoom::sized(memory.spans_len, memory.buckets_len);
-        let mut in_rust = lines.line(&view, method, Window { x: line.x, y: line.y }).expect("there is memory in C");
+        let mut in_rust = lines.line(&view, Window { x: line.x, y: line.y }).expect("there is memory in C");
         for k in 0..self.rays {
             // SAFETY: there are so many of each.
             let (place, hit, code, work) = unsafe {
