@@ -147,10 +147,15 @@ impl<S: Scalar> Limits<S> {
     pub fn worst_case(&self, extent: &Extent) -> Work {
         let search = self.worst_search(extent);
         // A search that memory led is begun anew without it where it runs out.
-        if extent.walks > 1 { search.plus(&search) } else { search }
+        let (searches, all) = if extent.walks > 1 { (2, search.plus(&search)) } else { (1, search) };
+        // A line's list is made once. Each of its spans may come into it past all before it, n (n − 1) / 2 times in all, and is
+        // looked at five times: for the list, in two searches, and in a walk around a fold in each.
+        let spans = u64::from(extent.spans);
+        let visited = (spans.saturating_mul(spans + 9) / 2).min(searches * u64::from(self.spans));
+        Work { spans_visited: u32::try_from(visited).unwrap_or(u32::MAX), ..all }
     }
 
-    /// The same of one search.
+    /// The same of one search, but for spans.
     fn worst_search(&self, extent: &Extent) -> Work {
         // In each walk a view's clipping method may go through what the ray meets once more, where a fold is all but touched.
         let walks = extent.walks.max(1);
@@ -162,7 +167,6 @@ impl<S: Scalar> Limits<S> {
         let starts = patches.saturating_mul(starts_per_patch).saturating_add(extent.surfaces);
         // What proves that a patch holds one root at most finds it, without a start and without a clip.
         let proved = if extent.clipped { patches } else { 0 };
-        let spans = u64::from(extent.spans);
         Work {
             surfaces_tested: extent.surfaces.min(self.surfaces),
             nodes_visited: extent.nodes.min(self.nodes),
@@ -172,9 +176,7 @@ impl<S: Scalar> Limits<S> {
                 .saturating_mul(extent.walks)
                 .saturating_add(extent.scene_voxels)
                 .min(self.voxels),
-            // Each of a line's spans may come into the list past all before it, n (n − 1) / 2 times in all, and is looked at
-            // six times: for the list, for its surface, in two searches, and in a walk around a fold in each.
-            spans_visited: (spans.saturating_mul(spans + 11) / 2).min(u64::from(self.spans)) as u32,
+            spans_visited: 0,
             newton_starts: starts,
             newton_steps: if extent.clipped || self.acceptance == Acceptance::Proved {
                 self.newton_steps

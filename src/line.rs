@@ -8,16 +8,12 @@
 //! A. Erdahl, "Half-tone perspective drawings by computer", AFIPS 1967.
 
 use crate::arena::{Arena, Need};
-use crate::limits::{GaveUp, Limit, Limits, Work, spend};
+use crate::limits::{Limit, Limits, Work, spend};
 use crate::patch::Patch;
-use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
-use crate::ray::Hit;
-use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::span::{InLine, Order, Span};
 use crate::story::Event;
-use crate::surface::Surface;
 use crate::view::{RUN, Sight, View, ViewRay};
 
 const NONE: u32 = u32::MAX;
@@ -209,36 +205,6 @@ impl<'m, S: Scalar> Line<'m, S> {
         *self.active.get_mut(at).ok_or(Limit::Slot)? = number;
         self.count += 1;
         Ok(())
-    }
-
-    /// The closest hit of a ray over all surfaces that the line holds, those in front first; a line of
-    /// [`Order::Surfaces`].
-    ///
-    /// `search` is given a surface, the ray's planes, the range of depths in which a root matters and, if the line is one of
-    /// patches, the patches that the ray may meet; and what is left of `limits`, whose budgets are for one ray, on top of what
-    /// `work` counts already. It returns the closest root that it finds. `work` grows by what this call did.
-    #[inline(always)]
-    pub fn closest<'v, P: Point<Scalar = S>>(
-        &mut self,
-        view: &View<'v, P>,
-        ray: &ViewRay<S>,
-        limits: &Limits<S>,
-        work: &mut Work,
-        search: impl FnMut(
-            &Surface<'v, P>,
-            &Planes<S>,
-            DepthRange<S>,
-            &InLine<'_, S>,
-            &Limits<S>,
-            &mut Work,
-        ) -> Result<Option<Root<P::Parameter>>, Limit>,
-    ) -> Result<Option<Hit<S>>, GaveUp<S>> {
-        let before = work.spans_visited;
-        match self.nearby(view.patches(), ray, limits, work) {
-            Ok(Some(nearby)) => nearby.closest(view, ray, &limits.beyond(work, before), work, search),
-            Ok(None) => Ok(None),
-            Err(limit) => Err(GaveUp { limit, best: None }),
-        }
     }
 
     /// The spans that may hold a ray; `None` if none does.

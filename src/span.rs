@@ -1,16 +1,9 @@
 //! Where in a scan line a surface or a patch can be seen, and what of that lies around one ray.
 
-use crate::limits::{GaveUp, Limit, Limits, Work, spend};
+use crate::limits::{Limit, Limits, Work, spend};
 use crate::patch::{Crossing, Patch};
-use crate::planes::{DepthRange, Planes};
-use crate::point::Point;
-use crate::ray::Hit;
-use crate::root::Root;
+use crate::planes::Planes;
 use crate::scalar::Scalar;
-use crate::story::Event;
-use crate::surface::Surface;
-use crate::sweep::Along;
-use crate::view::{Facing, View, ViewRay};
 
 /// Where in a scan line a surface or a patch can be seen: a slot of lent memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,55 +69,6 @@ pub struct InLine<'l, S> {
 }
 
 impl<'l, S: Scalar> InLine<'l, S> {
-    /// See [`Line::closest`](crate::line::Line::closest). Of its own, so that a ray that can meet nothing costs no more than to
-    /// see that.
-    #[inline(never)]
-    pub(crate) fn closest<'v, P: Point<Scalar = S>>(
-        self,
-        view: &View<'v, P>,
-        ray: &ViewRay<S>,
-        limits: &Limits<S>,
-        work: &mut Work,
-        mut search: impl FnMut(
-            &Surface<'v, P>,
-            &Planes<S>,
-            DepthRange<S>,
-            &InLine<'_, S>,
-            &Limits<S>,
-            &mut Work,
-        ) -> Result<Option<Root<P::Parameter>>, Limit>,
-    ) -> Result<Option<Hit<S>>, GaveUp<S>> {
-        let Facing { planes, range, .. } = &view.facing(ray);
-        let mut best: Option<(Root<P::Parameter>, u32)> = None;
-        let ended = self.surfaces(limits, work, |number, near, in_line, work| {
-            let farthest = best.map_or(range.max, |(root, _)| root.depth);
-            if !(near <= farthest) {
-                return Ok(());
-            }
-            spend(&mut work.surfaces_tested, limits.surfaces, Limit::Surfaces)?;
-            let Some(surface) = view.surface(number as usize) else {
-                return Err(Limit::Slot);
-            };
-            let within = DepthRange { min: range.min, max: farthest };
-            S::tell(|| Event::Surface(number));
-            if let Some(root) = search(&surface, planes, within, in_line, limits, work)? {
-                // As in `Scene::closest`.
-                let closer = |(old, other): (Root<P::Parameter>, u32)| {
-                    root.depth < old.depth || (root.depth == old.depth && number < other)
-                };
-                if best.is_none_or(closer) {
-                    best = Some((root, number));
-                }
-            }
-            Ok(())
-        });
-        let best = best.map(|(root, surface)| root.hit(surface, planes.t(root.depth)));
-        match ended {
-            Ok(()) => Ok(best),
-            Err(limit) => Err(GaveUp { limit, best }),
-        }
-    }
-
     /// Skips the first ones that do not hold the ray.
     #[inline(always)]
     pub(crate) fn skip(&mut self) {
@@ -135,31 +79,6 @@ impl<'l, S: Scalar> InLine<'l, S> {
             }
             self.list = after;
         }
-    }
-
-    /// Each surface of which a span holds the ray, with the least depth of those spans, if the list is ordered by surfaces.
-    #[inline(always)]
-    fn surfaces(
-        mut self,
-        limits: &Limits<S>,
-        work: &mut Work,
-        mut visit: impl FnMut(u32, S, &Self, &mut Work) -> Result<(), Limit>,
-    ) -> Result<(), Limit> {
-        // Ends: each turn takes at least one span away.
-        while let Some((&first, after)) = self.list.split_first() {
-            spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
-            let span = self.spans.get(first as usize).ok_or(Limit::Slot)?;
-            let same =
-                |&&other: &&u32| self.spans.get(other as usize).is_some_and(|other| other.surface == span.surface);
-            let count = 1 + after.iter().take_while(same).count();
-            let Some((of_surface, others)) = self.list.split_at_checked(count) else {
-                break;
-            };
-            visit(span.surface, span.near, &InLine { list: of_surface, ..self }, work)?;
-            self.list = others;
-            self.skip();
-        }
-        Ok(())
     }
 
     /// Calls `visit` with each patch whose parallelepiped the ray meets, and its surface's number: in the order of the list, up to
@@ -198,11 +117,6 @@ impl<'l, S: Scalar> InLine<'l, S> {
         Ok(())
     }
 
-    /// Whether the spans are of patches.
-    pub(crate) fn has_patches(&self) -> bool {
-        self.patches.is_some()
-    }
-
     /// Whether the list holds a span of the surface around the ray.
     #[inline(always)]
     pub(crate) fn holds_surface(&self, surface: u32) -> bool {
@@ -214,46 +128,5 @@ impl<'l, S: Scalar> InLine<'l, S> {
     #[inline(always)]
     pub(crate) fn first_surface(&self) -> Option<u32> {
         Some(self.spans.get(*self.list.first()? as usize)?.surface)
-    }
-}
-
-impl<S: Scalar> Along<S> for InLine<'_, S> {
-    #[inline(always)]
-    fn ahead(
-        &self,
-        planes: &Planes<S>,
-        range: &DepthRange<S>,
-        limits: &Limits<S>,
-        work: &mut Work,
-        mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
-    ) -> Result<(), Limit> {
-        self.visit(
-            planes,
-            range.max,
-            limits,
-            work,
-            |_, _| false,
-            |_, patch, crossing, work| visit(patch, crossing, work),
-        )
-    }
-
-    /// Front to back as well: the way to the nearest patch in the line is short.
-    #[inline(always)]
-    fn back(
-        &self,
-        planes: &Planes<S>,
-        range: &DepthRange<S>,
-        limits: &Limits<S>,
-        work: &mut Work,
-        mut visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<bool, Limit>,
-    ) -> Result<(), Limit> {
-        self.visit(
-            planes,
-            range.max,
-            limits,
-            work,
-            |_, _| false,
-            |_, patch, crossing, work| Ok(if visit(patch, crossing, work)? { range.max } else { S::LEAST }),
-        )
     }
 }

@@ -1,7 +1,7 @@
 //! The patches whose parallelepipeds a line meets, in the order of its way through a surface.
 //!
 //! A full search goes along the ray, a testing ray back toward its origin; both meet each patch once. What leads them to the
-//! patches is the surface's grid, or, for the rays of a view, the scan line.
+//! patches is the surface's grid.
 
 use crate::grid::Grid;
 use crate::limits::{Limit, Limits, Work, spend};
@@ -10,34 +10,6 @@ use crate::planes::{DepthRange, Planes};
 use crate::scalar::Scalar;
 use crate::story::Event;
 use crate::walk::Walk;
-
-/// The patches of one surface, and what leads to those along a ray.
-pub trait Along<S: Scalar> {
-    /// Calls `visit` with each patch whose parallelepiped the ray, as a whole line, meets, front to back as far as is known.
-    ///
-    /// `visit` returns the depth up to which to go on.
-    fn ahead(
-        &self,
-        planes: &Planes<S>,
-        range: &DepthRange<S>,
-        limits: &Limits<S>,
-        work: &mut Work,
-        visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
-    ) -> Result<(), Limit>;
-
-    /// Calls `visit` with each patch whose parallelepiped the ray, as a whole line, meets, and which may reach into `range`:
-    /// from its far end on, as far as is known.
-    ///
-    /// `visit` returns whether to go on.
-    fn back(
-        &self,
-        planes: &Planes<S>,
-        range: &DepthRange<S>,
-        limits: &Limits<S>,
-        work: &mut Work,
-        visit: impl FnMut(&Patch<S>, &Crossing<S>, &mut Work) -> Result<bool, Limit>,
-    ) -> Result<(), Limit>;
-}
 
 /// A surface's patches in its grid.
 #[derive(Clone, Copy, Debug)]
@@ -48,9 +20,12 @@ pub struct InGrid<'m, S> {
     pub patches: &'m [Patch<S>],
 }
 
-impl<S: Scalar> Along<S> for InGrid<'_, S> {
+impl<S: Scalar> InGrid<'_, S> {
+    /// Calls `visit` with each patch whose parallelepiped the ray, as a whole line, meets, front to back as far as is known.
+    ///
+    /// `visit` returns the depth up to which to go on.
     #[inline(always)]
-    fn ahead(
+    pub fn ahead(
         &self,
         planes: &Planes<S>,
         range: &DepthRange<S>,
@@ -66,8 +41,12 @@ impl<S: Scalar> Along<S> for InGrid<'_, S> {
         })
     }
 
+    /// Calls `visit` with each patch whose parallelepiped the ray, as a whole line, meets, and which may reach into `range`:
+    /// from its far end on, as far as is known.
+    ///
+    /// `visit` returns whether to go on.
     #[inline(always)]
-    fn back(
+    pub fn back(
         &self,
         planes: &Planes<S>,
         range: &DepthRange<S>,

@@ -11,7 +11,7 @@ use crate::planes::{DepthRange, Planes};
 use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::story::Event;
-use crate::sweep::Along;
+use crate::sweep::InGrid;
 
 /// A patch whose parallelepiped the testing ray meets.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ pub struct Listed<'p, S> {
 /// from the point toward the origin, as long as `visit` says so.
 #[inline(always)]
 pub fn testing_ray<S: Scalar, A: Parameter<Scalar = S>>(
-    along: &impl Along<S>,
+    along: &InGrid<'_, S>,
     planes: &Planes<S>,
     root: &Root<A>,
     nearest: S,
@@ -77,7 +77,7 @@ pub enum Verdict {
 ///
 /// Source: the paper's section "An Improvement of Bézier Clipping".
 pub fn verdict<S: Scalar, A: Parameter<Scalar = S>>(
-    along: &impl Along<S>,
+    along: &InGrid<'_, S>,
     planes: &Planes<S>,
     root: &Root<A>,
     nearest: S,

@@ -2,13 +2,13 @@ extern crate std;
 
 use super::*;
 use crate::frame::Frame;
+use crate::method::{Following, Scratch, newton_predicted};
 use crate::patch::Patches;
 use crate::point::Plain;
 use crate::ray::Interval;
 use crate::scene::{Scene, SceneError, SceneMemory, SceneOptions, SurfaceSlot};
 use crate::subdivide::{PatchMemory, SubdivideError, SubdivideScratch, Subdivision, subdivide};
 use crate::surface::Net;
-use crate::sweep::Along;
 use crate::view::{Camera, ViewError, ViewMemory};
 use std::vec;
 use std::vec::Vec;
@@ -235,13 +235,13 @@ fn budgets_are_of_one_ray_though_the_counts_go_on() {
     with_views(|view, patches| {
         let window = Window { x: WHOLE, y: [0.0, 0.0] };
         let mut room = Room::new(patches.len(), 1);
-        let mut line = Line::of_patches(view, window, Order::Surfaces, room.lend()).unwrap();
-        let ray = view.ray([0.01, 0.0], &Interval::ahead()).unwrap();
+        let mut line = Line::of_patches(view, window, Order::Depth, room.lend()).unwrap();
+        // Beyond all patches, so that each around the ray is tested and nothing is found.
+        let ray = view.ray([0.01, 0.0], &Interval::new(1e6, f64::INFINITY).unwrap()).unwrap();
+        let mut scratch = Scratch::<_, 4, 16>::new();
         let mut ask = |limits: &Limits<f64>, work: &mut Work| {
-            line.closest(view, &ray, limits, work, |_, planes, range, along, limits, work| {
-                along.ahead(planes, &range, limits, work, |_, _, _| Ok(f64::INFINITY))?;
-                Ok(None)
-            })
+            let memory = &mut Following { slots: &mut [], last: u32::MAX };
+            newton_predicted::closest_in_view(view, &mut line, memory, 0, &ray, limits, &mut scratch.view(), work)
         };
         let mut once = Work::default();
         assert_eq!(ask(&Limits::default(), &mut once), Ok(None));
@@ -250,12 +250,7 @@ fn budgets_are_of_one_ray_though_the_counts_go_on() {
         if again.patches_tested == 0 {
             return;
         }
-        let enough = Limits {
-            spans: again.spans_visited,
-            patches: again.patches_tested,
-            surfaces: again.surfaces_tested,
-            ..Limits::default()
-        };
+        let enough = Limits { spans: again.spans_visited, patches: again.patches_tested, ..Limits::default() };
         for _ in 0..3 {
             assert_eq!(ask(&enough, &mut again), Ok(None));
         }

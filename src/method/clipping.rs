@@ -9,14 +9,10 @@
 use super::{collect, keep_closest};
 use crate::clipper::{ClipRoom, Clipper};
 use crate::limits::{GaveUp, Limits, Work};
-use crate::line::Line;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
-use crate::region::{Order, Region};
-use crate::scalar::Scalar;
+use crate::region::Order;
 use crate::scene::Scene;
-use crate::sweep::Along;
-use crate::view::{View, ViewRay};
 use heapless::vec::VecView;
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`. `work` is set to what the call
@@ -36,41 +32,6 @@ pub fn closest<P: Point>(
         // Ends with the roots.
         while let Some(root) = roots.next(work)? {
             keep_closest(&mut best, root, planes, &mut work.intersection_points);
-        }
-        Ok(best)
-    })
-}
-
-/// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`. `work` grows by what the call did.
-///
-/// `line` is the ray's, one of surfaces, or of patches in [`Order::Surfaces`](crate::span::Order::Surfaces) where there are
-/// any: then of each surface no more is clipped than the smallest region that holds all patches that the ray meets.
-#[inline]
-pub fn closest_in_view<P: Point>(
-    view: &View<'_, P>,
-    line: &mut Line<'_, P::Scalar>,
-    ray: &ViewRay<P::Scalar>,
-    limits: &Limits<P::Scalar>,
-    room: &mut ClipRoom<'_, P>,
-    work: &mut Work,
-) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
-        let mut region = Some(Region::WHOLE);
-        if along.has_patches() {
-            region = None;
-            along.ahead(planes, &range, limits, work, |patch, _, _| {
-                let domain = Region::between(patch.domain().bounds());
-                region = Some(region.map_or(domain, |region| region.joined(&domain)));
-                Ok(P::Scalar::INFINITY)
-            })?;
-        }
-        let mut best = None;
-        if let Some(region) = region {
-            let mut clipper = Clipper { surface, planes, limits, room };
-            clipper.project()?;
-            clipper.roots_within(region, work, |root, work| {
-                keep_closest(&mut best, root, planes, &mut work.intersection_points);
-            })?;
         }
         Ok(best)
     })

@@ -16,7 +16,6 @@ use super::{Remembered, keep_closest, led};
 use crate::clipper::{ClipRoom, Clipper};
 use crate::grid::Grids;
 use crate::limits::{GaveUp, Limit, Limits, Work};
-use crate::line::Line;
 use crate::parameter::Parameter;
 use crate::patch::Patches;
 use crate::point::Point;
@@ -26,9 +25,8 @@ use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::story::Event;
-use crate::sweep::{Along, InGrid};
+use crate::sweep::InGrid;
 use crate::verify::{Verdict, verdict};
-use crate::view::{View, ViewRay};
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
 ///
@@ -47,7 +45,7 @@ pub fn closest<P: Point>(
     room: &mut ClipRoom<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    led(scan_line.wrapping_add(1), true, work, |stamp, recalled, work| {
+    led(scan_line.wrapping_add(1), work, |stamp, recalled, work| {
         scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
             let number = surface.number as usize;
             let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
@@ -59,35 +57,11 @@ pub fn closest<P: Point>(
     })
 }
 
-/// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
-///
-/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::span::Order::Surfaces); it leads the testing ray, and no
-/// grid is walked. All else is as for [`closest`],
-/// but `work` grows by what the call did.
-#[inline]
-pub fn closest_in_view<P: Point>(
-    view: &View<'_, P>,
-    line: &mut Line<'_, P::Scalar>,
-    memory: &mut [Remembered<P::Scalar>],
-    scan_line: u32,
-    ray: &ViewRay<P::Scalar>,
-    limits: &Limits<P::Scalar>,
-    room: &mut ClipRoom<'_, P>,
-    work: &mut Work,
-) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    led(scan_line.wrapping_add(1), false, work, |stamp, recalled, work| {
-        line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
-            let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
-            search(Clipper { surface, planes, limits, room }, along, range.min, slot, stamp, recalled, work)
-        })
-    })
-}
-
 /// The closest root on one surface in the ray's interval, and what to remember of it.
 #[inline(always)]
 fn search<P: Point>(
     mut clipper: Clipper<'_, '_, '_, P>,
-    along: &impl Along<P::Scalar>,
+    along: &InGrid<'_, P::Scalar>,
     nearest: P::Scalar,
     slot: &mut Remembered<P::Scalar>,
     stamp: u32,

@@ -139,12 +139,10 @@ impl<S: Scalar> Remembered<S> {
 }
 
 /// A search that memory may lead, by a stamp to recall with; and where it runs out, once more without memory, by budgets of its
-/// own: what memory led into must not cost a ray its answer. `search` also says whether it recalled anything. `set` is whether it
-/// sets `work`, and does not add to it.
+/// own: what memory led into must not cost a ray its answer. `search` sets `work`, and also says whether it recalled anything.
 #[inline(always)]
 fn led<T, E>(
     mut stamp: u32,
-    set: bool,
     work: &mut Work,
     mut search: impl FnMut(u32, &mut bool, &mut Work) -> Result<T, E>,
 ) -> Result<T, E> {
@@ -153,7 +151,7 @@ fn led<T, E>(
     loop {
         let mut recalled = false;
         let answer = search(stamp, &mut recalled, work);
-        if let (true, Some(spent)) = (set, &spent) {
+        if let Some(spent) = &spent {
             *work = spent.plus(work);
         }
         if !(recalled && answer.is_err()) {

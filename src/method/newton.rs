@@ -10,19 +10,15 @@ use super::starts::{First, roots_of_patch};
 use super::{ScratchView, collect, keep_closest};
 use crate::fallback::Fallback;
 use crate::limits::{GaveUp, Limit, Limits, Work};
-use crate::line::Line;
 use crate::newton::Solver;
 use crate::patch::Patches;
 use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
 use crate::root::Root;
-use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::surface::Surface;
-use crate::sweep::Along;
 use crate::tree::Tree;
-use crate::view::{View, ViewRay};
 use heapless::vec::VecView;
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
@@ -44,36 +40,6 @@ pub fn closest<P: Point, F: Fallback<P>>(
         roots(surface, patches, tree, planes, range, limits, scratch, work, |root, work| {
             keep_closest(&mut best, root, planes, &mut work.intersection_points);
             true
-        })?;
-        Ok(best)
-    })
-}
-
-/// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
-///
-/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::span::Order::Surfaces): it leads to the patches, and no
-/// tree is descended. All else is as for [`closest`],
-/// but `work` grows by what the call did.
-#[inline]
-pub fn closest_in_view<P: Point, F: Fallback<P>>(
-    view: &View<'_, P>,
-    line: &mut Line<'_, P::Scalar>,
-    ray: &ViewRay<P::Scalar>,
-    limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P, F>,
-    work: &mut Work,
-) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
-        let mut best = None;
-        let mut solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
-        along.ahead(planes, &range, limits, work, |patch, crossing, work| {
-            if crossing.overlaps(&range) {
-                let fallback = &mut scratch.fallback;
-                roots_of_patch(&mut solver, fallback, patch, crossing, First::AsCritical, work, |root, work| {
-                    keep_closest(&mut best, root, planes, &mut work.intersection_points);
-                })?;
-            }
-            Ok(P::Scalar::INFINITY)
         })?;
         Ok(best)
     })

@@ -16,7 +16,6 @@ use super::{Remembered, ScratchView, keep_closest, led};
 use crate::fallback::Fallback;
 use crate::grid::Grids;
 use crate::limits::{GaveUp, Limit, Limits, Work};
-use crate::line::Line;
 use crate::newton::Solver;
 use crate::patch::Patches;
 use crate::planes::DepthRange;
@@ -26,9 +25,8 @@ use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
 use crate::story::Event;
-use crate::sweep::{Along, InGrid};
+use crate::sweep::InGrid;
 use crate::verify::{met_at_most_once, testing_ray};
-use crate::view::{View, ViewRay};
 
 /// The closest hit of `ray` in `interval`: a hit, a miss, or out of a budget of `limits`.
 ///
@@ -47,53 +45,28 @@ pub fn closest<P: Point, F: Fallback<P>>(
     scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    led(scan_line.wrapping_add(1), true, work, |stamp, recalled, work| {
+    led(scan_line.wrapping_add(1), work, |stamp, recalled, work| {
         scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
             let number = surface.number as usize;
             let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
             let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
             let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
             let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
-            Search { solver, fallback: &mut scratch.fallback, along: &InGrid { grid, patches }, range }
-                .run(slot, stamp, recalled, work)
-        })
-    })
-}
-
-/// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
-///
-/// `line` is the ray's, one of patches in [`Order::Surfaces`](crate::span::Order::Surfaces); instead of walking grids, the
-/// full search and the testing ray are led by it. All else is as for [`closest`],
-/// but `work` grows by what the call did.
-#[inline]
-pub fn closest_in_view<P: Point, F: Fallback<P>>(
-    view: &View<'_, P>,
-    line: &mut Line<'_, P::Scalar>,
-    memory: &mut [Remembered<P::Scalar>],
-    scan_line: u32,
-    ray: &ViewRay<P::Scalar>,
-    limits: &Limits<P::Scalar>,
-    scratch: &mut ScratchView<'_, P, F>,
-    work: &mut Work,
-) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    led(scan_line.wrapping_add(1), false, work, |stamp, recalled, work| {
-        line.closest(view, ray, limits, work, |surface, planes, range, along, limits, work| {
-            let slot = memory.get_mut(surface.number as usize).ok_or(Limit::Memory)?;
-            let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
+            let along = InGrid { grid, patches };
             Search { solver, fallback: &mut scratch.fallback, along, range }.run(slot, stamp, recalled, work)
         })
     })
 }
 
 /// One ray and one surface.
-struct Search<'a, 's, 'm, P: Point, F, A> {
+struct Search<'a, 's, 'm, P: Point, F> {
     solver: Solver<'a, 's, 'm, P>,
     fallback: &'a mut F,
-    along: &'a A,
+    along: InGrid<'a, P::Scalar>,
     range: DepthRange<P::Scalar>,
 }
 
-impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> {
+impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
     /// The closest point in the ray's interval, and what to remember of it.
     #[inline(always)]
     fn run(
@@ -146,7 +119,7 @@ impl<P: Point, F: Fallback<P>, A: Along<P::Scalar>> Search<'_, '_, '_, P, F, A> 
         let mut closest = Some(point);
         let (mut owners, mut alone) = (0_u32, true);
         work.intersection_points += u32::from(planes.t_in_interval(point.depth).is_some());
-        testing_ray(*along, planes, &point, range.min, limits, work, |listed, work| {
+        testing_ray(along, planes, &point, range.min, limits, work, |listed, work| {
             if listed.owner {
                 owners += 1;
                 if met_at_most_once(listed.patch, listed.crossing, limits) {
