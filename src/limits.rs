@@ -309,8 +309,7 @@ pub enum Limit {
     Hits,
     /// The scratch is too small for a surface of these degrees: its capacities are the owner's choice.
     Scratch,
-    /// The ray is not of the part of the image that the scan line was made for, or the method needs a line of patches and this
-    /// one is of surfaces.
+    /// The ray is not of the part of the image that the scan line was made for.
     Line,
     /// Coherence memory with fewer slots than surfaces.
     Memory,

@@ -1,8 +1,8 @@
-//! A scan line of a view: which surfaces or patches a ray can meet, from where it is in the line.
+//! A scan line of a view: which patches a ray can meet, from where it is in the line.
 //!
-//! Each surface or patch that can be seen in the line's rows has a span of x there. Spans hang in buckets by where they
-//! begin, so that nothing is sorted. While rays go along the line, the spans around them are kept in a short list, in the
-//! order in which methods search; a ray that goes back builds the list anew, so that any order of rays gives the same answers.
+//! Each patch that can be seen in the line's rows has a span of x there. Spans hang in buckets by where they begin, so that
+//! nothing is sorted. While rays go along the line, the spans around them are kept in a short list, the nearest patch first; a
+//! ray that goes back builds the list anew, so that any order of rays gives the same answers.
 //!
 //! Ours: an active list over a scan line, as scan conversion of polygons has had since C. Wylie, G. Romney, D. Evans and
 //! A. Erdahl, "Half-tone perspective drawings by computer", AFIPS 1967.
@@ -12,7 +12,7 @@ use crate::limits::{Limit, Limits, Work, spend};
 use crate::patch::Patch;
 use crate::point::Point;
 use crate::scalar::Scalar;
-use crate::span::{InLine, Order, Span};
+use crate::span::{InLine, Span};
 use crate::story::Event;
 use crate::view::{RUN, Sight, View, ViewRay};
 
@@ -21,7 +21,7 @@ const NONE: u32 = u32::MAX;
 /// Lent memory for a scan line.
 #[derive(Debug)]
 pub struct LineMemory<'m, S> {
-    /// The surfaces or patches that can be seen in the line: at most as many as there are.
+    /// The patches that can be seen in the line: at most as many as there are.
     pub spans: &'m mut [Span<S>],
     /// As many slots as `spans` holds.
     pub active: &'m mut [u32],
@@ -54,16 +54,13 @@ pub struct Window<S> {
 /// A scan line of a view, ready for its rays.
 #[derive(Debug)]
 pub struct Line<'m, S> {
-    /// Whether spans are of patches, not of whole surfaces.
-    patches: bool,
     window: Window<S>,
     spans: &'m [Span<S>],
     buckets: &'m [u32],
-    /// Numbers of spans that may hold the ray, in the order of search.
+    /// Numbers of spans that may hold the ray, in order.
     active: &'m mut [u32],
     /// How many of them there are.
     count: usize,
-    order: Order,
     /// Buckets per unit of x.
     per_unit: S,
     /// The bucket that the list is of; none before the first ray.
@@ -71,62 +68,34 @@ pub struct Line<'m, S> {
 }
 
 impl<'m, S: Scalar> Line<'m, S> {
-    /// The spans of a view's surfaces: for methods without patches.
-    pub fn of_surfaces<P: Point<Scalar = S>>(
+    /// The spans of a view's patches. Too little memory is an error that lists all needs.
+    pub fn build<P: Point<Scalar = S>>(
         view: &View<'_, P>,
         window: Window<S>,
         memory: LineMemory<'m, S>,
     ) -> Result<Self, LineNeeds> {
-        Line::fill(false, window, Order::Surfaces, memory, |filling| {
-            for (surface, sight) in (0_u32..).zip(view.surfaces()) {
-                filling.add(sight, sight.near, surface, 0);
-            }
-        })
-    }
-
-    /// The spans of a view's patches.
-    pub fn of_patches<P: Point<Scalar = S>>(
-        view: &View<'_, P>,
-        window: Window<S>,
-        order: Order,
-        memory: LineMemory<'m, S>,
-    ) -> Result<Self, LineNeeds> {
-        let Window { y: [low, high], .. } = window;
-        Line::fill(true, window, order, memory, |filling| {
-            for (surface, sight) in (0_u32..).zip(view.surfaces()) {
-                let [from, to] = sight.outline.rows();
-                if !(from <= high && low <= to) {
-                    continue;
-                }
-                let Some((first, sights, runs)) = view.patches_of(surface as usize) else {
-                    continue;
-                };
-                for ((number, run), &[from, to]) in (first..).step_by(RUN).zip(sights.chunks(RUN)).zip(runs) {
-                    if from <= high && low <= to {
-                        for (patch, of_patch) in (number..).zip(run) {
-                            filling.add(of_patch, sight.near, surface, patch);
-                        }
-                    }
-                }
-            }
-        })
-    }
-
-    #[inline(always)]
-    fn fill(
-        patches: bool,
-        window: Window<S>,
-        order: Order,
-        memory: LineMemory<'m, S>,
-        all: impl FnOnce(&mut Filling<'m, S>),
-    ) -> Result<Self, LineNeeds> {
+        let Window { x: [begin, end], y: [low, high] } = window;
         let LineMemory { spans, active, buckets } = memory;
         buckets.fill(NONE);
-        let [begin, end] = window.x;
         let per_unit = if begin < end { S::from_u32(buckets.len() as u32) / (end - begin) } else { S::ZERO };
         let buckets_given = buckets.len();
         let mut filling = Filling { window, spans: Arena::new(spans), buckets, per_unit };
-        all(&mut filling);
+        for (surface, sight) in (0_u32..).zip(view.surfaces()) {
+            let [from, to] = sight.outline.rows();
+            if !(from <= high && low <= to) {
+                continue;
+            }
+            let Some((first, sights, runs)) = view.patches_of(surface as usize) else {
+                continue;
+            };
+            for ((number, run), &[from, to]) in (first..).step_by(RUN).zip(sights.chunks(RUN)).zip(runs) {
+                if from <= high && low <= to {
+                    for (patch, of_patch) in (number..).zip(run) {
+                        filling.add(of_patch, surface, patch);
+                    }
+                }
+            }
+        }
         let Filling { spans, buckets, .. } = filling;
         let needs = LineNeeds {
             spans: spans.need(),
@@ -136,7 +105,7 @@ impl<'m, S: Scalar> Line<'m, S> {
         if !(needs.spans.met() && needs.active.met() && needs.buckets.met()) {
             return Err(needs);
         }
-        Ok(Line { patches, window, spans: spans.finish(), buckets, active, count: 0, order, per_unit, bucket: None })
+        Ok(Line { window, spans: spans.finish(), buckets, active, count: 0, per_unit, bucket: None })
     }
 
     /// Brings the list to a ray's place in the line.
@@ -196,7 +165,7 @@ impl<'m, S: Scalar> Line<'m, S> {
         while let Some(before) = at.checked_sub(1) {
             spend(&mut work.spans_visited, most, Limit::Spans)?;
             let other = self.active.get(before).copied().ok_or(Limit::Slot)?;
-            if !span.is_before(self.span(other)?, self.order) {
+            if !span.is_before(self.span(other)?) {
                 break;
             }
             *self.active.get_mut(at).ok_or(Limit::Slot)? = other;
@@ -217,12 +186,8 @@ impl<'m, S: Scalar> Line<'m, S> {
         work: &mut Work,
     ) -> Result<Option<InLine<'l, S>>, Limit> {
         self.go_to(ray, limits.spans.saturating_add(work.spans_visited), work)?;
-        let mut nearby = InLine {
-            spans: self.spans,
-            list: self.active.get(..self.count).unwrap_or(&[]),
-            x: ray.place[0],
-            patches: self.patches.then_some(patches),
-        };
+        let mut nearby =
+            InLine { spans: self.spans, list: self.active.get(..self.count).unwrap_or(&[]), x: ray.place[0], patches };
         nearby.skip();
         Ok(if nearby.list.is_empty() { None } else { Some(nearby) })
     }
@@ -237,9 +202,9 @@ struct Filling<'m, S> {
 }
 
 impl<S: Scalar> Filling<'_, S> {
-    /// Adds what can be seen of a surface or patch in the window, if anything.
+    /// Adds what can be seen of a patch in the window, if anything.
     #[inline(always)]
-    fn add(&mut self, sight: &Sight<S>, front: S, surface: u32, patch: u32) {
+    fn add(&mut self, sight: &Sight<S>, surface: u32, patch: u32) {
         let [left, right] = self.window.x;
         let Some(x) = sight.outline.across(self.window.y).filter(|x| x[0] <= right && left <= x[1]) else {
             return;
@@ -248,7 +213,7 @@ impl<S: Scalar> Filling<'_, S> {
         let [first, last] = x.map(|x| bucket_of(x - left, self.per_unit, buckets));
         let number = self.spans.len() as u32;
         let next = self.buckets.get_mut(first as usize).map_or(NONE, |head| core::mem::replace(head, number));
-        self.spans.push(Span { x, near: sight.near, front, surface, patch, next, last });
+        self.spans.push(Span { x, near: sight.near, surface, patch, next, last });
     }
 }
 

@@ -1,11 +1,11 @@
-//! Where in a scan line a surface or a patch can be seen, and what of that lies around one ray.
+//! Where in a scan line a patch can be seen, and what of that lies around one ray.
 
 use crate::limits::{Limit, Limits, Work, spend};
 use crate::patch::{Crossing, Patch};
 use crate::planes::Planes;
 use crate::scalar::Scalar;
 
-/// Where in a scan line a surface or a patch can be seen: a slot of lent memory.
+/// Where in a scan line a patch can be seen: a slot of lent memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Span<S> {
@@ -13,10 +13,9 @@ pub struct Span<S> {
     pub(crate) x: [S; 2],
     /// The least depth.
     pub(crate) near: S,
-    /// The least depth of the surface that it is of: spans of one surface stand together if ordered by it.
-    pub(crate) front: S,
+    /// The surface's number in the scene.
     pub(crate) surface: u32,
-    /// The patch's number in the scene, if it is of a patch.
+    /// The patch's number in the scene.
     pub(crate) patch: u32,
     /// The next one of those that begin in the same bucket, or `u32::MAX`.
     pub(crate) next: u32,
@@ -26,46 +25,29 @@ pub struct Span<S> {
 
 impl<S: Scalar> Span<S> {
     /// What a slot holds before it is filled: zeros, of which static memory takes no flash.
-    pub const EMPTY: Self =
-        Span { x: [S::ZERO; 2], near: S::ZERO, front: S::ZERO, surface: 0, patch: 0, next: 0, last: 0 };
+    pub const EMPTY: Self = Span { x: [S::ZERO; 2], near: S::ZERO, surface: 0, patch: 0, next: 0, last: 0 };
 
     #[inline(always)]
     fn holds(&self, x: S) -> bool {
         self.x[0] <= x && x <= self.x[1]
     }
 
-    /// Whether it comes before another one. No two are equal, so that the list is the same in whatever order it was built.
+    /// Whether it comes before another one: nearer, of whatever surface. No two are equal, so that the list is the same in whatever
+    /// order it was built.
     #[inline(always)]
-    pub(crate) fn is_before(&self, other: &Self, order: Order) -> bool {
-        if order == Order::Surfaces {
-            if self.front != other.front {
-                return self.front < other.front;
-            }
-            if self.surface != other.surface {
-                return self.surface < other.surface;
-            }
-        }
+    pub(crate) fn is_before(&self, other: &Self) -> bool {
         self.near < other.near || (self.near == other.near && self.patch < other.patch)
     }
 }
 
-/// In which order spans are searched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
-    /// Surface by surface, those in front first, and in each the nearest patch first.
-    Surfaces,
-    /// The nearest patch first, of whatever surface.
-    Depth,
-}
-
-/// The spans around a ray, of one surface or of all, and others that end in the same bucket.
+/// The spans around a ray, and others that end in the same bucket.
 #[derive(Clone, Copy, Debug)]
 pub struct InLine<'l, S> {
     pub(crate) spans: &'l [Span<S>],
     pub(crate) list: &'l [u32],
     pub(crate) x: S,
-    /// The patches of the view, if the spans are of patches.
-    pub(crate) patches: Option<&'l [Patch<S>]>,
+    /// The patches of the view.
+    pub(crate) patches: &'l [Patch<S>],
 }
 
 impl<'l, S: Scalar> InLine<'l, S> {
@@ -93,7 +75,6 @@ impl<'l, S: Scalar> InLine<'l, S> {
         skip: impl Fn(u32, &Patch<S>) -> bool,
         mut visit: impl FnMut(u32, &Patch<S>, &Crossing<S>, &mut Work) -> Result<S, Limit>,
     ) -> Result<(), Limit> {
-        let patches = self.patches.ok_or(Limit::Line)?;
         for &number in self.list {
             spend(&mut work.spans_visited, limits.spans, Limit::Spans)?;
             let span = self.spans.get(number as usize).ok_or(Limit::Slot)?;
@@ -103,7 +84,7 @@ impl<'l, S: Scalar> InLine<'l, S> {
             if !(span.near <= farthest) {
                 break;
             }
-            let patch = patches.get(span.patch as usize).ok_or(Limit::Slot)?;
+            let patch = self.patches.get(span.patch as usize).ok_or(Limit::Slot)?;
             if skip(span.surface, patch) {
                 continue;
             }

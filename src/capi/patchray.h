@@ -976,8 +976,8 @@ typedef struct {
 
 // Where in a scan line a patch can be seen: a slot of memory that is lent for a line.
 typedef struct {
-  // The least and the largest x, its least depth, and its surface's.
-  float numbers[4];
+  // The least and the largest x, and its least depth.
+  float numbers[3];
   // Its surface and patch, the next one, and the bucket in which it ends.
   uint32_t counts[4];
 } patchray_span_f32;
@@ -1109,8 +1109,8 @@ typedef struct {
 
 // Where in a scan line a patch can be seen: a slot of memory that is lent for a line.
 typedef struct {
-  // The least and the largest x, its least depth, and its surface's.
-  double numbers[4];
+  // The least and the largest x, and its least depth.
+  double numbers[3];
   // Its surface and patch, the next one, and the bucket in which it ends.
   uint32_t counts[4];
 } patchray_span_f64;

@@ -380,8 +380,8 @@ pub struct patchray_view<S> {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct patchray_span<S> {
-    /// The least and the largest x, its least depth, and its surface's.
-    pub numbers: [S; 4],
+    /// The least and the largest x, and its least depth.
+    pub numbers: [S; 3],
     /// Its surface and patch, the next one, and the bucket in which it ends.
     pub counts: [u32; 4],
 }

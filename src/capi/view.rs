@@ -16,7 +16,6 @@ use crate::method::{Following, clipping_predicted, newton_predicted};
 use crate::point::Point;
 use crate::ray::{Interval, RayError};
 use crate::scalar::Scalar;
-use crate::span::Order;
 use crate::view::{Camera, View, ViewError, ViewMemory, ViewRay};
 
 /// # Safety
@@ -167,7 +166,7 @@ unsafe fn line<P: Point, R>(
     if !(has_extent && asked.places_len.is_multiple_of(2) && tables::is_number_of_line(asked.number)) {
         return Err(PATCHRAY_OPTION);
     }
-    let mut line = match Line::of_patches(&view, window, Order::Depth, lent_slots) {
+    let mut line = match Line::build(&view, window, lent_slots) {
         Ok(line) => line,
         Err(LineNeeds { spans, active, buckets }) => {
             let [spans_len, active_len, buckets_len] = [spans, active, buckets].map(|need| need.needed);

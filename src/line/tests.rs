@@ -148,25 +148,23 @@ fn a_line_leads_to_every_patch_that_brute_force_meets() {
     let mut all = 0;
     with_views(|view, patches| {
         let mut numbers = Numbers(2);
-        for order in [Order::Surfaces, Order::Depth] {
-            for buckets in [1, 2, 7, 30, 100, 300] {
-                let mut room = Room::new(patches.len(), buckets);
-                // A row, and a band of jittered rows.
-                let y = numbers.next() * 0.4;
-                for band in [0.0, 0.01] {
-                    let window = Window { x: WHOLE, y: [y - band, y + band] };
-                    let mut line = Line::of_patches(view, window, order, room.lend()).unwrap();
-                    for k in 0..100 {
-                        let place = [f64::from(k) * 0.02 - 1.0, y + band * numbers.next()];
-                        let mut found = met(view, &mut line, place);
-                        let mut expected = met_by_force(view, place);
-                        found.sort_unstable();
-                        found.dedup();
-                        // What the line leads to in vain, behind the eye, is not held against it.
-                        expected.retain(|k| found.binary_search(k).is_err());
-                        assert_eq!(expected, [0; 0], "{place:?}");
-                        all += found.len();
-                    }
+        for buckets in [1, 2, 7, 30, 100, 300] {
+            let mut room = Room::new(patches.len(), buckets);
+            // A row, and a band of jittered rows.
+            let y = numbers.next() * 0.4;
+            for band in [0.0, 0.01] {
+                let window = Window { x: WHOLE, y: [y - band, y + band] };
+                let mut line = Line::build(view, window, room.lend()).unwrap();
+                for k in 0..200 {
+                    let place = [f64::from(k) * 0.01 - 1.0, y + band * numbers.next()];
+                    let mut found = met(view, &mut line, place);
+                    let mut expected = met_by_force(view, place);
+                    found.sort_unstable();
+                    found.dedup();
+                    // What the line leads to in vain, behind the eye, is not held against it.
+                    expected.retain(|k| found.binary_search(k).is_err());
+                    assert_eq!(expected, [0; 0], "{place:?}");
+                    all += found.len();
                 }
             }
         }
@@ -178,16 +176,14 @@ fn a_line_leads_to_every_patch_that_brute_force_meets() {
 fn rays_in_any_order_are_led_to_the_same_patches_in_the_same_order() {
     with_views(|view, patches| {
         let (mut room, mut numbers) = (Room::new(patches.len(), 50), Numbers(3));
-        for order in [Order::Surfaces, Order::Depth] {
-            let window = Window { x: WHOLE, y: [0.1, 0.1] };
-            let mut line = Line::of_patches(view, window, order, room.lend()).unwrap();
-            let xs: Vec<f64> = (0..200).map(|_| numbers.next()).collect();
-            let jumping: Vec<Vec<usize>> = xs.iter().map(|&x| met(view, &mut line, [x, 0.1])).collect();
-            for (&x, there) in xs.iter().zip(&jumping) {
-                let mut fresh = Room::new(patches.len(), 50);
-                let mut line = Line::of_patches(view, window, order, fresh.lend()).unwrap();
-                assert_eq!(&met(view, &mut line, [x, 0.1]), there);
-            }
+        let window = Window { x: WHOLE, y: [0.1, 0.1] };
+        let mut line = Line::build(view, window, room.lend()).unwrap();
+        let xs: Vec<f64> = (0..200).map(|_| numbers.next()).collect();
+        let jumping: Vec<Vec<usize>> = xs.iter().map(|&x| met(view, &mut line, [x, 0.1])).collect();
+        for (&x, there) in xs.iter().zip(&jumping) {
+            let mut fresh = Room::new(patches.len(), 50);
+            let mut line = Line::build(view, window, fresh.lend()).unwrap();
+            assert_eq!(&met(view, &mut line, [x, 0.1]), there);
         }
     });
 }
@@ -197,7 +193,7 @@ fn too_little_room_is_told_and_a_ray_of_another_line_is_no_miss() {
     let mut tried = 0;
     with_views(|view, patches| {
         let window = Window { x: WHOLE, y: [-0.3, 0.3] };
-        let needs = Line::of_patches(view, window, Order::Depth, Room::new(0, 0).lend()).unwrap_err();
+        let needs = Line::build(view, window, Room::new(0, 0).lend()).unwrap_err();
         assert!(needs.spans.needed <= patches.len());
         if needs.spans.needed == 0 {
             return;
@@ -205,7 +201,7 @@ fn too_little_room_is_told_and_a_ray_of_another_line_is_no_miss() {
         tried += 1;
         assert_eq!((needs.active.needed, needs.buckets.needed), (needs.spans.needed, 1));
         let mut room = Room::new(needs.spans.needed, 1);
-        let mut line = Line::of_patches(view, window, Order::Depth, room.lend()).unwrap();
+        let mut line = Line::build(view, window, room.lend()).unwrap();
         let (limits, mut work) = (Limits::default(), Work::default());
         for place in [[0.0, 0.31], [0.0, -0.4]] {
             let ray = view.ray(place, &Interval::ahead()).unwrap();
@@ -214,7 +210,7 @@ fn too_little_room_is_told_and_a_ray_of_another_line_is_no_miss() {
         }
         let mut short = Room::new(needs.spans.needed, 1);
         short.active.pop();
-        assert!(Line::of_patches(view, window, Order::Depth, short.lend()).is_err());
+        assert!(Line::build(view, window, short.lend()).is_err());
         // Out of its budget, and after that as if nothing had been.
         let ray = view.ray([0.01, 0.0], &Interval::ahead()).unwrap();
         let (budget, mut work) = (Limits { spans: 0, ..limits }, Work::default());
@@ -222,7 +218,7 @@ fn too_little_room_is_told_and_a_ray_of_another_line_is_no_miss() {
         assert_eq!(work.spans_visited, 0);
         assert_eq!(met(view, &mut line, [0.01, 0.0]).len(), {
             let mut fresh = Room::new(patches.len(), 1);
-            let mut line = Line::of_patches(view, window, Order::Depth, fresh.lend()).unwrap();
+            let mut line = Line::build(view, window, fresh.lend()).unwrap();
             met(view, &mut line, [0.01, 0.0]).len()
         });
     });
@@ -235,7 +231,7 @@ fn budgets_are_of_one_ray_though_the_counts_go_on() {
     with_views(|view, patches| {
         let window = Window { x: WHOLE, y: [0.0, 0.0] };
         let mut room = Room::new(patches.len(), 1);
-        let mut line = Line::of_patches(view, window, Order::Depth, room.lend()).unwrap();
+        let mut line = Line::build(view, window, room.lend()).unwrap();
         // Beyond all patches, so that each around the ray is tested and nothing is found.
         let ray = view.ray([0.01, 0.0], &Interval::new(1e6, f64::INFINITY).unwrap()).unwrap();
         let mut scratch = Scratch::<_, 4, 16>::new();

@@ -43,9 +43,8 @@ const WINDOW: f64 = 0.002;
 
 /// The closest hit of a ray of a view: a hit, a miss, or out of a budget of `limits`.
 ///
-/// `line` is the ray's, one of patches in [`Order::Depth`](crate::span::Order::Depth). `memory` is lent, and to be left alone
-/// between rays of one scan line. `scan_line` numbers the line: a number that no earlier line with this memory had begins
-/// with no coherence (at most 2³² − 2). `work` grows by what the call did.
+/// `line` is the ray's. `memory` is lent, and to be left alone between rays of one scan line. `scan_line` numbers the line: a
+/// number that no earlier line with this memory had begins with no coherence (at most 2³² − 2). `work` grows by what the call did.
 #[inline]
 pub fn closest_in_view<P: Point>(
     view: &View<'_, P>,

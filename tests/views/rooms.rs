@@ -8,7 +8,7 @@ use patchray::patch::Patch;
 use patchray::point::Point;
 use patchray::ray::Hit;
 use patchray::scalar::Scalar;
-use patchray::span::{Order, Span};
+use patchray::span::Span;
 use patchray::view::{Camera, Sight, View, ViewError, ViewMemory, ViewNeeds, ViewRay};
 use patchray_host::scene::trace::Method;
 
@@ -126,7 +126,7 @@ impl<S: Scalar> LineRoom<S> {
         view: &View<'_, P>,
         window: Window<S>,
     ) -> Result<Line<'_, S>, LineNeeds> {
-        Line::of_patches(view, window, Order::Depth, self.lend())
+        Line::build(view, window, self.lend())
     }
 }
 

@@ -12,7 +12,7 @@ use patchray::point::Point;
 use patchray::ray::{Hit, Interval, RayError};
 use patchray::scalar::Scalar;
 use patchray::scene::Scene;
-use patchray::span::{Order, Span};
+use patchray::span::Span;
 use patchray::view::View;
 
 use super::{BLOCK, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};
@@ -73,7 +73,7 @@ impl<'m, M: ViewMethod<P>, P: Point> ViewTracer<'m, M, P> {
         let (first, last) = (x(line.samples.first()), x(line.samples.last()));
         let [a, b] = line.sy.map(P::Scalar::from_f64);
         let window = Window { x: [first, last], y: if a < b { [a, b] } else { [b, a] } };
-        Line::of_patches(&self.view, window, Order::Depth, memory)
+        Line::build(&self.view, window, memory)
     }
 }
 

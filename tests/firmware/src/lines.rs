@@ -10,7 +10,7 @@ use patchray::point::Point;
 use patchray::ray::Interval;
 use patchray::scalar::Scalar;
 use patchray::scene::Scene;
-use patchray::span::{Order, Span};
+use patchray::span::Span;
 use patchray::view::{RUN, Sight, View, ViewMemory};
 
 use crate::hash::Answer;
@@ -138,7 +138,7 @@ macro_rules! tracer {
                 let Seen { view, scratch, followed, spans, active, buckets, .. } = self;
                 let y = picture.y(number);
                 let window = Window { x: [picture.x(0), picture.x(picture.size[0].saturating_sub(1))], y: [y, y] };
-                let line = Line::of_patches(view, window, Order::Depth, LineMemory { spans, active, buckets }).ok()?;
+                let line = Line::build(view, window, LineMemory { spans, active, buckets }).ok()?;
                 Some(SeenLine { view, line, following: Following { slots: followed, last: u32::MAX }, scratch, number })
             }
 

@@ -9,7 +9,6 @@ use patchray::arena::Need;
 use patchray::grid::GridOptions;
 use patchray::line::{Line, LineMemory, LineNeeds, Window};
 use patchray::scene::SceneOptions;
-use patchray::span::Order;
 use patchray::view::{View, ViewError};
 
 pub(crate) fn check(bytes: &[u8]) {
@@ -118,7 +117,7 @@ impl OfKind for Preparation {
         lend(&mut bytes, |[spans, active, buckets]| {
             let (mut room, mut others) = (LineRoom::sized(spans, buckets), vec![7; active]);
             let memory = LineMemory { active: &mut others, ..room.lend() };
-            match Line::of_patches(&view, window, Order::Depth, memory) {
+            match Line::build(&view, window, memory) {
                 Ok(_) => Stage::Done,
                 Err(LineNeeds { spans, active, buckets }) => Stage::Lacks([spans, active, buckets]),
             }

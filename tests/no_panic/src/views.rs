@@ -9,7 +9,7 @@ use patchray::patch::Patch;
 use patchray::point::Point;
 use patchray::ray::{Interval, RayError};
 use patchray::scalar::Scalar;
-use patchray::span::{Order, Span};
+use patchray::span::Span;
 use patchray::view::{Camera, Sight, View, ViewError, ViewMemory, ViewRay};
 
 /// A view's memory.
@@ -87,7 +87,7 @@ unsafe extern "C" fn line<P: Point>(
     out: &mut Result<Line<'static, P::Scalar>, LineNeeds>,
 ) {
     // SAFETY: the caller keeps the contract of `slots`.
-    *out = Line::of_patches(view, *window, Order::Depth, unsafe { memory.memory() });
+    *out = Line::build(view, *window, unsafe { memory.memory() });
 }
 
 /// # Safety
