@@ -7,7 +7,7 @@
 /// ```compile_fail
 /// const _: () = assert!(patchray::LAYOUT == 0, "these tables were baked for another version of patchray");
 /// ```
-pub const LAYOUT: u32 = 4;
+pub const LAYOUT: u32 = 5;
 
 /// What a table of the C interface holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

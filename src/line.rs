@@ -80,8 +80,7 @@ impl<'m, S: Scalar> Line<'m, S> {
         let per_unit = if begin < end { S::from_u32(buckets.len() as u32) / (end - begin) } else { S::ZERO };
         let buckets_given = buckets.len();
         let mut filling = Filling { window, spans: Arena::new(spans), buckets, per_unit };
-        for (surface, sight) in (0_u32..).zip(view.surfaces()) {
-            let [from, to] = sight.outline.rows();
+        for (surface, &[from, to]) in (0_u32..).zip(view.surfaces()) {
             if !(from <= high && low <= to) {
                 continue;
             }

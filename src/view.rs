@@ -1,13 +1,12 @@
 //! A view: what all rays from one eye share, computed once.
 //!
 //! The scene is turned so that the camera looks along one axis: then all rays of the view are steepest along it, and two
-//! slopes are all that sets one apart from another. Of each surface and each patch it is known where in the image it can be
-//! seen, so that a scan line ([`crate::line`]) knows beforehand which of them a ray can meet: no tree and no grid is walked.
+//! slopes are all that sets one apart from another. Of each patch it is known where in the image it can be seen, so that a scan
+//! line ([`crate::line`]) knows beforehand which of them a ray can meet: no tree and no grid is walked.
 //!
 //! Ours: the paper knows only that rays of a scan line are coherent.
 
 use crate::arena::{Arena, Need};
-use crate::frame::Frame;
 use crate::outline::Outline;
 use crate::patch::{Patch, Patches};
 use crate::planes::{DepthRange, Planes};
@@ -22,7 +21,7 @@ mod lens;
 pub use lens::{Camera, ViewHeader};
 use lens::{Lens, Refusal};
 
-/// What is seen of a surface or a patch: a slot of lent memory.
+/// What is seen of a patch: a slot of lent memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Sight<S> {
@@ -46,9 +45,9 @@ pub const RUN: usize = 16;
 pub struct ViewMemory<'m, P: Point> {
     /// Control points of all surfaces, turned: as many as the scene has.
     pub points: &'m mut [P],
-    /// One slot per surface.
-    pub surfaces: &'m mut [Sight<P::Scalar>],
-    /// The patches, turned: as many as there are, none for methods without patches.
+    /// The least and largest y of each surface: one slot per surface.
+    pub surfaces: &'m mut [[P::Scalar; 2]],
+    /// The patches, turned: as many as there are.
     pub patches: &'m mut [Patch<P::Scalar>],
     /// One slot per patch.
     pub sights: &'m mut [Sight<P::Scalar>],
@@ -130,7 +129,7 @@ pub struct View<'m, P: Point> {
     header: ViewHeader<P::Scalar>,
     scene: Scene<'m, P>,
     patches: Patches<'m, P::Scalar>,
-    surfaces: &'m [Sight<P::Scalar>],
+    surfaces: &'m [[P::Scalar; 2]],
     sights: &'m [Sight<P::Scalar>],
     runs: &'m [[P::Scalar; 2]],
     first_runs: &'m [u32],
@@ -161,11 +160,10 @@ pub(crate) struct Facing<S> {
 }
 
 impl<'m, P: Point> View<'m, P> {
-    /// Turns a scene, and for methods with patches these too, to a camera, into lent memory. Too little memory is an error that
-    /// lists all needs.
+    /// Turns a scene and its patches to a camera, into lent memory. Too little memory is an error that lists all needs.
     pub fn build(
         scene: &Scene<'m, P>,
-        patches: Option<&Patches<'m, P::Scalar>>,
+        patches: &Patches<'m, P::Scalar>,
         camera: &Camera<P::Scalar>,
         memory: ViewMemory<'m, P>,
     ) -> Result<Self, ViewError> {
@@ -180,39 +178,32 @@ impl<'m, P: Point> View<'m, P> {
         let mut points = Arena::new(memory.points);
         let mut surfaces = Arena::new(memory.surfaces);
         for Surface { net, .. } in scene.surfaces() {
-            let mut sight = Sight { outline: Outline::NOWHERE, near: infinity };
             for point in net.points() {
-                let turned = point.turned(&lens.turn);
-                points.push(turned);
-                let near = turned.position()[2] - middle - Frame::<P::Scalar>::padding();
-                sight.near = sight.near.lesser(near);
+                points.push(point.turned(&lens.turn));
             }
-            sight.outline = lens.outline(net.points().iter().map(|point| point.position()));
-            surfaces.push(sight);
+            surfaces.push(lens.outline(net.points().iter().map(|point| point.position())).rows());
         }
         let mut turned = Arena::new(memory.patches);
         let mut sights = Arena::new(memory.sights);
         let mut runs = Arena::new(memory.runs);
         let mut first_runs = Arena::new(memory.first_runs);
-        if let Some(patches) = patches {
-            for surface in 0..scene.len() {
-                first_runs.push(u32::try_from(runs.len()).map_err(|_| ViewError::TooLarge)?);
-                for run in patches.of_surface(surface).ok_or(ViewError::Patches)?.chunks(RUN) {
-                    let mut rows = [infinity, least];
-                    for patch in run {
-                        let bounds = patch.bounds().turned(&lens.turn);
-                        let corners = patch.bounds().corners();
-                        let outline = lens.outline(corners.into_iter());
-                        let [y0, y1] = outline.rows();
-                        rows = [rows[0].lesser(y0), rows[1].greater(y1)];
-                        turned.push(Patch { bounds, ..*patch });
-                        sights.push(Sight { outline, near: bounds.aabb().low[2] - middle });
-                    }
-                    runs.push(rows);
-                }
-            }
+        for surface in 0..scene.len() {
             first_runs.push(u32::try_from(runs.len()).map_err(|_| ViewError::TooLarge)?);
+            for run in patches.of_surface(surface).ok_or(ViewError::Patches)?.chunks(RUN) {
+                let mut rows = [infinity, least];
+                for patch in run {
+                    let bounds = patch.bounds().turned(&lens.turn);
+                    let corners = patch.bounds().corners();
+                    let outline = lens.outline(corners.into_iter());
+                    let [y0, y1] = outline.rows();
+                    rows = [rows[0].lesser(y0), rows[1].greater(y1)];
+                    turned.push(Patch { bounds, ..*patch });
+                    sights.push(Sight { outline, near: bounds.aabb().low[2] - middle });
+                }
+                runs.push(rows);
+            }
         }
+        first_runs.push(u32::try_from(runs.len()).map_err(|_| ViewError::TooLarge)?);
         let needs = ViewNeeds {
             points: points.need(),
             surfaces: surfaces.need(),
@@ -228,7 +219,7 @@ impl<'m, P: Point> View<'m, P> {
         Ok(View {
             header: ViewHeader { middle, ..lens.header },
             scene: scene.with_points(points.finish()),
-            patches: patches.map_or(Patches::new(&[], &[]), |patches| patches.with_patches(turned.finish())),
+            patches: patches.with_patches(turned.finish()),
             surfaces: surfaces.finish(),
             sights: sights.finish(),
             runs: runs.finish(),
@@ -242,7 +233,7 @@ impl<'m, P: Point> View<'m, P> {
         header: ViewHeader<P::Scalar>,
         scene: Scene<'m, P>,
         patches: Patches<'m, P::Scalar>,
-        surfaces: &'m [Sight<P::Scalar>],
+        surfaces: &'m [[P::Scalar; 2]],
         sights: &'m [Sight<P::Scalar>],
         runs: &'m [[P::Scalar; 2]],
         first_runs: &'m [u32],
@@ -259,7 +250,7 @@ impl<'m, P: Point> View<'m, P> {
     #[cfg(all(feature = "capi", not(test)))]
     pub(crate) fn check(
         scene: &Scene<'m, P>,
-        patches: Option<&Patches<'m, P::Scalar>>,
+        patches: &Patches<'m, P::Scalar>,
         camera: &Camera<P::Scalar>,
     ) -> Result<(), ViewError> {
         lens_of(scene, patches, camera).map(|_| ())
@@ -279,8 +270,8 @@ impl<'m, P: Point> View<'m, P> {
         self.patches.all()
     }
 
-    /// What is seen of the surfaces.
-    pub(crate) fn surfaces(&self) -> &'m [Sight<P::Scalar>] {
+    /// The least and largest y of each surface.
+    pub(crate) fn surfaces(&self) -> &'m [[P::Scalar; 2]] {
         self.surfaces
     }
 
@@ -342,10 +333,10 @@ impl<'m, P: Point> View<'m, P> {
 /// The lens of a camera that looks at a scene and its patches, if they are its own.
 fn lens_of<P: Point>(
     scene: &Scene<'_, P>,
-    patches: Option<&Patches<'_, P::Scalar>>,
+    patches: &Patches<'_, P::Scalar>,
     camera: &Camera<P::Scalar>,
 ) -> Result<Lens<P::Scalar>, ViewError> {
-    if patches.is_some_and(|patches| patches.surfaces() != scene.len()) {
+    if patches.surfaces() != scene.len() {
         return Err(ViewError::Patches);
     }
     let lens = Lens::of(scene.frame(), camera)?;

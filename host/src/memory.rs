@@ -36,7 +36,7 @@ pub enum Kind {
     GridReferences,
     /// Control points turned to a view.
     ViewPoints,
-    /// What a view sees of each surface.
+    /// The rows of surfaces in a view.
     ViewSurfaces,
     /// Patches turned to a view.
     ViewPatches,

@@ -242,7 +242,7 @@
 #define PATCHRAY_GAVE_UP_SPANS -50
 
 // The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
-#define PATCHRAY_LAYOUT 4
+#define PATCHRAY_LAYOUT 5
 
 // What a hit's `surface` is where there is none.
 #define PATCHRAY_NO_SURFACE 4294967295
@@ -887,7 +887,7 @@ typedef struct {
   float up[3];
 } patchray_camera_f32;
 
-// Where a surface or a patch can be seen: a slot of a view's tables.
+// Where a patch can be seen: a slot of a view's tables.
 typedef struct {
   // The octagon around it in the image, and its least depth.
   float numbers[9];
@@ -900,9 +900,9 @@ typedef struct {
   float *points;
   // How many numbers.
   size_t points_len;
-  // What is seen of the surfaces.
-  patchray_sight_f32 *surfaces;
-  // How many.
+  // Rows in which the surfaces are seen.
+  float *surfaces;
+  // How many numbers.
   size_t surfaces_len;
   // Patches.
   patchray_patch_f32 *patches;
@@ -938,9 +938,9 @@ typedef struct {
   patchray_scene_f32 scene;
   // The patches, turned.
   patchray_patches_f32 patches;
-  // What is seen of the surfaces.
-  const patchray_sight_f32 *surfaces;
-  // How many.
+  // Rows in which the surfaces are seen.
+  const float *surfaces;
+  // How many numbers.
   size_t surfaces_len;
   // What is seen of the patches.
   const patchray_sight_f32 *sights;
@@ -1020,7 +1020,7 @@ typedef struct {
   double up[3];
 } patchray_camera_f64;
 
-// Where a surface or a patch can be seen: a slot of a view's tables.
+// Where a patch can be seen: a slot of a view's tables.
 typedef struct {
   // The octagon around it in the image, and its least depth.
   double numbers[9];
@@ -1033,9 +1033,9 @@ typedef struct {
   double *points;
   // How many numbers.
   size_t points_len;
-  // What is seen of the surfaces.
-  patchray_sight_f64 *surfaces;
-  // How many.
+  // Rows in which the surfaces are seen.
+  double *surfaces;
+  // How many numbers.
   size_t surfaces_len;
   // Patches.
   patchray_patch_f64 *patches;
@@ -1071,9 +1071,9 @@ typedef struct {
   patchray_scene_f64 scene;
   // The patches, turned.
   patchray_patches_f64 patches;
-  // What is seen of the surfaces.
-  const patchray_sight_f64 *surfaces;
-  // How many.
+  // Rows in which the surfaces are seen.
+  const double *surfaces;
+  // How many numbers.
   size_t surfaces_len;
   // What is seen of the patches.
   const patchray_sight_f64 *sights;

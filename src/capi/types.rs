@@ -15,7 +15,7 @@ use crate::span::Span;
 use crate::view::{Sight, ViewHeader};
 
 /// The version of all that tables hold: a library refuses tables of another one with PATCHRAY_LAYOUT_DIFFERS.
-pub const PATCHRAY_LAYOUT: u32 = 4;
+pub const PATCHRAY_LAYOUT: u32 = 5;
 
 /// What a hit's `surface` is where there is none.
 pub const PATCHRAY_NO_SURFACE: u32 = 0xffff_ffff;
@@ -299,7 +299,7 @@ pub struct patchray_camera<S> {
     pub up: [S; 3],
 }
 
-/// Where a surface or a patch can be seen: a slot of a view's tables.
+/// Where a patch can be seen: a slot of a view's tables.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct patchray_sight<S> {
@@ -324,9 +324,9 @@ pub struct patchray_view_memory<S> {
     pub points: *mut S,
     /// How many numbers.
     pub points_len: usize,
-    /// What is seen of the surfaces.
-    pub surfaces: *mut patchray_sight<S>,
-    /// How many.
+    /// Rows in which the surfaces are seen.
+    pub surfaces: *mut S,
+    /// How many numbers.
     pub surfaces_len: usize,
     /// Patches.
     pub patches: *mut patchray_patch<S>,
@@ -358,9 +358,9 @@ pub struct patchray_view<S> {
     pub scene: patchray_scene<S>,
     /// The patches, turned.
     pub patches: patchray_patches<S>,
-    /// What is seen of the surfaces.
-    pub surfaces: *const patchray_sight<S>,
-    /// How many.
+    /// Rows in which the surfaces are seen.
+    pub surfaces: *const S,
+    /// How many numbers.
     pub surfaces_len: usize,
     /// What is seen of the patches.
     pub sights: *const patchray_sight<S>,

@@ -33,7 +33,7 @@ pub(super) unsafe fn view_build<P: Point>(
     let (lent, memory) = unsafe { lending.exchange(memory) }?;
     let out = lending.place(view)?;
     let points = lending.room::<_, P>(lent.points, lent.points_len)?;
-    let surfaces = lending.room(lent.surfaces, lent.surfaces_len)?;
+    let surfaces = lending.room::<_, [P::Scalar; 2]>(lent.surfaces, lent.surfaces_len)?;
     let turned = lending.room(lent.patches, lent.patches_len)?;
     let sights = lending.room(lent.sights, lent.sights_len)?;
     let runs = lending.room(lent.runs, lent.runs_len)?;
@@ -50,7 +50,7 @@ pub(super) unsafe fn view_build<P: Point>(
     let (patches, _) = unsafe { tables::patches_in(&mut lending, &of_patches) }?;
     let camera = Camera { eye, forward, right, up };
     // Before anything is written.
-    View::check(&scene, Some(&patches), &camera).map_err(of_view)?;
+    View::check(&scene, &patches, &camera).map_err(of_view)?;
     // SAFETY: the caller's.
     let room = unsafe {
         ViewMemory {
@@ -62,7 +62,7 @@ pub(super) unsafe fn view_build<P: Point>(
             first_runs: first_runs.open(),
         }
     };
-    let (lens, built) = match View::build(&scene, Some(&patches), &camera, room) {
+    let (lens, built) = match View::build(&scene, &patches, &camera, room) {
         Ok(view) => (view.lens(), Some(view.header())),
         Err(ViewError::Memory(needs)) => {
             let needs = [needs.points, needs.surfaces, needs.patches, needs.sights, needs.runs, needs.first_runs];
@@ -70,9 +70,9 @@ pub(super) unsafe fn view_build<P: Point>(
         }
         Err(error) => return Err(of_view(error)),
     };
-    let [points, surfaces_len, patches_len, sights_len, runs, first_runs_len] = lens;
+    let [points, surfaces, patches_len, sights_len, runs, first_runs_len] = lens;
     let points_len = points.saturating_mul(size_of::<P>() / size_of::<P::Scalar>());
-    let runs_len = runs.saturating_mul(2);
+    let [surfaces_len, runs_len] = [surfaces, runs].map(|rows| rows.saturating_mul(2));
     let counted =
         patchray_view_memory { points_len, surfaces_len, patches_len, sights_len, runs_len, first_runs_len, ..lent };
     // SAFETY: the caller's.

@@ -71,9 +71,9 @@ fn with_views(mut with: impl FnMut(&View<'_, Plain<f64>>, &[Patch<f64>])) {
             runs: &mut [],
             first_runs: &mut [],
         };
-        let Err(ViewError::Memory(needs)) = View::build(&scene, Some(&patches), &camera, nothing) else { panic!() };
+        let Err(ViewError::Memory(needs)) = View::build(&scene, &patches, &camera, nothing) else { panic!() };
         let mut points = vec![Plain::EMPTY; needs.points.needed];
-        let (mut surfaces, mut sights) = (vec![Sight::EMPTY; 5], vec![Sight::EMPTY; needs.sights.needed]);
+        let (mut surfaces, mut sights) = (vec![[0.0; 2]; 5], vec![Sight::EMPTY; needs.sights.needed]);
         let mut turned = vec![Patch::EMPTY; needs.patches.needed];
         let (mut runs, mut first_runs) = (vec![[0.0; 2]; needs.runs.needed], vec![0; needs.first_runs.needed]);
         let memory = ViewMemory {
@@ -84,7 +84,7 @@ fn with_views(mut with: impl FnMut(&View<'_, Plain<f64>>, &[Patch<f64>])) {
             runs: &mut runs,
             first_runs: &mut first_runs,
         };
-        let view = View::build(&scene, Some(&patches), &camera, memory).unwrap();
+        let view = View::build(&scene, &patches, &camera, memory).unwrap();
         with(&view, patches.all());
     }
 }

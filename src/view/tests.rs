@@ -27,18 +27,23 @@ fn with_scene<S: Scalar, R>(points: &Points<S>, with: impl FnOnce(&Scene<'_, Pla
     with(&Scene::build(&nets, &SceneOptions::default(), memory).unwrap())
 }
 
-/// Rooms for a view of one bilinear surface without patches.
-struct Room<S: Scalar>([Plain<S>; 4], [Sight<S>; 1]);
+/// Room for a view of one bilinear surface of no patches.
+struct Room<S: Scalar>([Plain<S>; 4], [[S; 2]; 1], [u32; 2]);
 
 impl<S: Scalar> Room<S> {
     fn new() -> Self {
-        Room([Plain::EMPTY; 4], [Sight::EMPTY; 1])
+        Room([Plain::EMPTY; 4], [[S::ZERO; 2]; 1], [0; 2])
     }
 
-    fn lend(&mut self) -> ViewMemory<'_, Plain<S>> {
-        let Room(points, surfaces) = self;
-        let (patches, sights, runs, first_runs) = (&mut [], &mut [], &mut [], &mut []);
-        ViewMemory { points, surfaces, patches, sights, runs, first_runs }
+    fn build<'m>(
+        &'m mut self,
+        scene: &Scene<'m, Plain<S>>,
+        camera: &Camera<S>,
+    ) -> Result<View<'m, Plain<S>>, ViewError> {
+        let Room(points, surfaces, first_runs) = self;
+        let (patches, sights, runs) = (&mut [], &mut [], &mut []);
+        let memory = ViewMemory { points, surfaces, patches, sights, runs, first_runs };
+        View::build(scene, &Patches::new(&[], &[0, 0]), camera, memory)
     }
 }
 
@@ -58,7 +63,7 @@ fn found_and_expected<S: Scalar>(scale: f64, place: [f64; 2]) -> Option<([f64; 3
     let points = saddle::<S>(scale);
     with_scene(&points, |scene| {
         let (camera, mut room) = (camera::<S>(scale), Room::new());
-        let view = View::build(scene, None, &camera, room.lend()).unwrap();
+        let view = room.build(scene, &camera).unwrap();
         let ray = view.ray(place.map(S::from_f64), &Interval::ahead()).unwrap();
         let facing = view.facing(&ray);
         let (limits, mut scratch) = (Limits::default(), Scratch::<Plain<S>, 2, 4>::new());
@@ -105,26 +110,21 @@ fn all_needs_are_told_at_once_and_lending_them_is_enough() {
             runs: &mut [],
             first_runs: &mut [],
         };
-        let needs = match View::build(scene, None, &camera(1.0), nothing()) {
-            Err(ViewError::Memory(needs)) => needs,
-            other => panic!("{other:?}"),
-        };
-        assert_eq!((needs.points.needed, needs.surfaces.needed), (4, 1));
-        assert_eq!([needs.patches, needs.sights, needs.runs, needs.first_runs].map(|need| need.needed), [0; 4]);
         let points = [Plain([0.1, 0.2, 0.3]); 4];
         let patch =
             crate::measure::Measure::of(&Net::new(1, 1, &points).unwrap(), 0.0).patch(crate::domain::Domain::WHOLE);
         let (all, first) = ([patch; 17], [0, 17]);
         // Of surfaces without patches a view would see nothing, and say so as a miss.
         for others in [&[0, 17, 17][..], &[0], &[]] {
-            let built = View::build(scene, Some(&Patches::new(&all, others)), &camera(1.0), nothing());
+            let built = View::build(scene, &Patches::new(&all, others), &camera(1.0), nothing());
             assert_eq!(built.err(), Some(ViewError::Patches), "{others:?}");
         }
         let patches = Patches::new(&all, &first);
-        match View::build(scene, Some(&patches), &camera(1.0), nothing()) {
+        match View::build(scene, &patches, &camera(1.0), nothing()) {
             Err(ViewError::Memory(needs)) => {
-                let all = [needs.patches, needs.sights, needs.runs, needs.first_runs].map(|need| need.needed);
-                assert_eq!(all, [17, 17, 2, 2]);
+                let ViewNeeds { points, surfaces, patches, sights, runs, first_runs } = needs;
+                let all = [points, surfaces, patches, sights, runs, first_runs].map(|need| need.needed);
+                assert_eq!(all, [4, 1, 17, 17, 2, 2]);
             }
             other => panic!("{other:?}"),
         }
@@ -135,7 +135,7 @@ fn all_needs_are_told_at_once_and_lending_them_is_enough() {
 fn cameras_and_rays_that_cannot_be_traced_are_refused_by_name() {
     with_scene(&saddle::<f64>(1.0), |scene| {
         let good = camera::<f64>(1.0);
-        let refused = |camera: &Camera<f64>| View::build(scene, None, camera, Room::new().lend()).err();
+        let refused = |camera: &Camera<f64>| Room::new().build(scene, camera).err();
         assert_eq!(refused(&good), None);
         assert_eq!(refused(&Camera { eye: [f64::NAN; 3], ..good }), Some(ViewError::Ray(RayError::NotANumber)));
         assert_eq!(refused(&Camera { right: [0.0; 3], ..good }), Some(ViewError::Ray(RayError::ZeroDirection)));
@@ -143,7 +143,7 @@ fn cameras_and_rays_that_cannot_be_traced_are_refused_by_name() {
         assert_eq!(refused(&Camera { up: good.forward.map(|c| c * (1.0 + 1e-15)), ..good }), Some(ViewError::Flat));
         assert_eq!(refused(&Camera { eye: [0.0, 0.0, 30.0], ..good }), Some(ViewError::Far));
         let mut room = Room::new();
-        let view = View::build(scene, None, &good, room.lend()).unwrap();
+        let view = room.build(scene, &good).unwrap();
         for place in [[f64::NAN, 0.0], [0.0, f64::INFINITY], [1e9, 0.0], [0.0, -8.0]] {
             assert_eq!(view.ray(place, &Interval::ahead()).err(), Some(RayError::OutOfView), "{place:?}");
         }
@@ -158,7 +158,7 @@ fn a_surface_around_the_eye_is_seen_everywhere() {
         let camera =
             Camera { eye: [0.0, 0.0, 0.5], forward: [1.0, 0.0, 0.0], right: [0.0, -1.0, 0.0], up: [0.0, 0.0, 1.0] };
         let mut room = Room::new();
-        let view = View::build(scene, None, &camera, room.lend()).unwrap();
-        assert_eq!(view.surfaces()[0].outline, Outline::EVERYWHERE);
+        let view = room.build(scene, &camera).unwrap();
+        assert_eq!(view.surfaces()[0], Outline::<f64>::EVERYWHERE.rows());
     });
 }

@@ -7,7 +7,7 @@ use patchray::patch::{Patch, Patches};
 use patchray::point::Plain;
 use patchray::scene::{Scene, SceneHeader, SurfaceSlot};
 
-const _: () = assert!(patchray::LAYOUT == 4, "these tables were baked for another version of patchray: bake them again");
+const _: () = assert!(patchray::LAYOUT == 5, "these tables were baked for another version of patchray: bake them again");
 
 /// The bytes of all tables, as `patchray info` says.
 pub const BYTES: usize = 3720;

@@ -18,7 +18,7 @@ static bool NAME(look)(const NAME(prepared) * all, NAME(seen) * seen)
     if (NAME(patchray_view_build)(&all->scene, &all->patches, &camera, &memory, &seen->view) != PATCHRAY_MEMORY)
         return false;
     memory.points = (REAL *)take(memory.points_len * sizeof *memory.points);
-    memory.surfaces = (NAME(patchray_sight) *)take(memory.surfaces_len * sizeof *memory.surfaces);
+    memory.surfaces = (REAL *)take(memory.surfaces_len * sizeof *memory.surfaces);
     memory.patches = (NAME(patchray_patch) *)take(memory.patches_len * sizeof *memory.patches);
     memory.sights = (NAME(patchray_sight) *)take(memory.sights_len * sizeof *memory.sights);
     memory.runs = (REAL *)take(memory.runs_len * sizeof *memory.runs);

@@ -48,7 +48,7 @@ impl InView {
 #[derive(Clone, Debug)]
 pub(crate) struct ViewRoom<P: Point> {
     pub(crate) points: Vec<P>,
-    pub(crate) surfaces: Vec<Sight<P::Scalar>>,
+    pub(crate) surfaces: Vec<[P::Scalar; 2]>,
     pub(crate) patches: Vec<Patch<P::Scalar>>,
     pub(crate) sights: Vec<Sight<P::Scalar>>,
     pub(crate) runs: Vec<[P::Scalar; 2]>,
@@ -60,7 +60,7 @@ impl<P: Kind> ViewRoom<P> {
     pub(crate) fn sized([points, surfaces, patches, sights, runs, first_runs]: [usize; 6]) -> Self {
         ViewRoom {
             points: vec![P::EMPTY; points],
-            surfaces: vec![Sight::EMPTY; surfaces],
+            surfaces: vec![[P::Scalar::ZERO; 2]; surfaces],
             patches: vec![Patch::EMPTY; patches],
             sights: vec![Sight::EMPTY; sights],
             runs: vec![[P::Scalar::ZERO; 2]; runs],
@@ -89,7 +89,7 @@ impl<P: Kind> ViewRoom<P> {
         prepared: &'m Prepared<P>,
         camera: &Camera<P::Scalar>,
     ) -> Result<View<'m, P>, ViewError> {
-        View::build(&prepared.scene(), Some(&prepared.patches()), camera, self.lend())
+        View::build(&prepared.scene(), &prepared.patches(), camera, self.lend())
     }
 }
 

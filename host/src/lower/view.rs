@@ -1,6 +1,6 @@
 //! A lowered scene as seen from one eye: the memory of the kernel's view.
 
-use patchray::patch::Patch;
+use patchray::patch::{Patch, Patches};
 use patchray::point::Point;
 use patchray::ray::{Interval, RayError};
 use patchray::scalar::Scalar;
@@ -18,7 +18,7 @@ use crate::settings::Settings;
 #[derive(Clone, Debug)]
 pub(super) struct ViewSlots<P: Point> {
     points: Vec<P>,
-    surfaces: Vec<Sight<P::Scalar>>,
+    surfaces: Vec<[P::Scalar; 2]>,
     patches: Vec<Patch<P::Scalar>>,
     sights: Vec<Sight<P::Scalar>>,
     runs: Vec<[P::Scalar; 2]>,
@@ -40,7 +40,7 @@ impl<P: Point> ViewSlots<P> {
     /// The needs, each as slots of its type.
     fn take(slots: &mut Slots, needs: &ViewNeeds) -> Result<Self, LowerError> {
         slots.ask::<P>(Kind::ViewPoints, needs.points);
-        slots.ask::<Sight<P::Scalar>>(Kind::ViewSurfaces, needs.surfaces);
+        slots.ask::<[P::Scalar; 2]>(Kind::ViewSurfaces, needs.surfaces);
         slots.ask::<Patch<P::Scalar>>(Kind::ViewPatches, needs.patches);
         slots.ask::<Sight<P::Scalar>>(Kind::ViewSights, needs.sights);
         slots.ask::<[P::Scalar; 2]>(Kind::ViewRuns, needs.runs);
@@ -48,7 +48,7 @@ impl<P: Point> ViewSlots<P> {
         slots.check()?;
         Ok(ViewSlots {
             points: slots.take(Kind::ViewPoints, P::EMPTY, needs.points)?,
-            surfaces: slots.take(Kind::ViewSurfaces, Sight::EMPTY, needs.surfaces)?,
+            surfaces: slots.take(Kind::ViewSurfaces, [P::Scalar::ZERO; 2], needs.surfaces)?,
             patches: slots.take(Kind::ViewPatches, Patch::EMPTY, needs.patches)?,
             sights: slots.take(Kind::ViewSights, Sight::EMPTY, needs.sights)?,
             runs: slots.take(Kind::ViewRuns, [P::Scalar::ZERO; 2], needs.runs)?,
@@ -123,17 +123,15 @@ impl<P: FromFile> Lowered<P> {
 impl<P: Point> Lowered<P> {
     /// Why the kernel cannot trace all of the picture's rays as those of one view, if it cannot. Needs no patches.
     pub fn no_view(&self, view: &camera::View) -> Option<String> {
-        let mut slots = ViewSlots::<P>::none();
         let (place, camera) = camera_of(view, self.header.frame().origin());
         let scene = self.scene_at(place);
-        let needs = match View::build(&scene, None, &camera, slots.lend()) {
-            Err(ViewError::Memory(needs)) => needs,
-            Err(error) => return Some(reason(error)),
-            Ok(_) => ViewNeeds::default(),
-        };
-        slots.points = vec![P::EMPTY; needs.points.needed];
-        slots.surfaces = vec![Sight::EMPTY; needs.surfaces.needed];
-        let seen = match View::build(&scene, None, &camera, slots.lend()) {
+        let first = vec![0; scene.len() + 1];
+        let no_patches = Patches::new(&[], &first);
+        let mut slots = ViewSlots::<P>::none();
+        slots.points = vec![P::EMPTY; self.points.len()];
+        slots.surfaces = vec![[P::Scalar::ZERO; 2]; scene.len()];
+        slots.first_runs = vec![0; scene.len() + 1];
+        let seen = match View::build(&scene, &no_patches, &camera, slots.lend()) {
             Ok(seen) => seen,
             Err(error) => return Some(reason(error)),
         };
@@ -143,17 +141,14 @@ impl<P: Point> Lowered<P> {
         Some(format!("of a ray in its corners {error}"))
     }
 
-    /// Takes the memory of a view of what was built, with its patches if there are any; `given` bounds the bytes of all
-    /// memory together.
+    /// Takes the memory of a view of what was built, its patches among it; `given` bounds the bytes of all memory together.
     ///
     /// # Errors
     /// More memory than there is or is given. That there is no such view, as [`Lowered::no_view`] tells, is internal.
     pub fn take_view(&mut self, view: &camera::View, given: u64) -> Result<(), LowerError> {
         let mut nothing = ViewSlots::none();
-        let patches = self.patches();
-        let patches = self.stages.has_patches().then_some(&patches);
         let (place, camera) = camera_of(view, self.header.frame().origin());
-        let needs = match View::build(&self.scene_at(place), patches, &camera, nothing.lend()) {
+        let needs = match View::build(&self.scene_at(place), &self.patches(), &camera, nothing.lend()) {
             Err(ViewError::Memory(needs)) => needs,
             Ok(_) => ViewNeeds::default(),
             Err(ViewError::TooLarge) => return Err(LowerError::TooLarge(ViewError::TooLarge.to_string())),
@@ -171,12 +166,11 @@ impl<P: Point> Lowered<P> {
     pub fn seen(&mut self, view: &camera::View) -> Result<(Views<'_, P>, View<'_, P>), LowerError> {
         let (place, camera) = camera_of(view, self.header.frame().origin());
         let headers = [Place::File, Place::Nets].map(|place| self.header_at(place));
-        let Lowered { stages, points, surfaces, offsets, references, patches, first, .. } = self;
+        let Lowered { points, surfaces, offsets, references, patches, first, .. } = self;
         let [scene, nets] = headers.map(|header| super::Scene::new(header, points, surfaces, offsets, references));
-        let patches = super::Patches::new(patches, first);
-        let with = stages.has_patches().then_some(&patches);
+        let patches = Patches::new(patches, first);
         let of = if place == Place::File { &scene } else { &nets };
-        let seen = View::build(of, with, &camera, self.view.lend());
+        let seen = View::build(of, &patches, &camera, self.view.lend());
         let seen = seen.map_err(|error| LowerError::Internal(error.to_string()))?;
         let tree = super::Tree::new(&self.nodes, &self.links);
         let grids = super::Grids::new(&self.grids, &self.grid_offsets, &self.grid_references);
@@ -191,7 +185,7 @@ impl<P: Point> Lowered<P> {
             return bytes;
         }
         bytes.add::<P>(Kind::ViewPoints, points.len());
-        bytes.add::<Sight<P::Scalar>>(Kind::ViewSurfaces, surfaces.len());
+        bytes.add::<[P::Scalar; 2]>(Kind::ViewSurfaces, surfaces.len());
         bytes.add::<Patch<P::Scalar>>(Kind::ViewPatches, patches.len());
         bytes.add::<Sight<P::Scalar>>(Kind::ViewSights, sights.len());
         bytes.add::<[P::Scalar; 2]>(Kind::ViewRuns, runs.len());

@@ -37,7 +37,7 @@ pub struct ViewRoom<
     const RUNS: usize,
 > {
     points: [P; POINTS],
-    surfaces: [Sight<P::Scalar>; COUNT],
+    surfaces: [[P::Scalar; 2]; COUNT],
     patches: [Patch<P::Scalar>; PATCHES],
     sights: [Sight<P::Scalar>; PATCHES],
     runs: [[P::Scalar; 2]; RUNS],
@@ -56,7 +56,7 @@ impl<P: Point, const POINTS: usize, const COUNT: usize, const FIRST: usize, cons
     pub const fn new() -> Self {
         ViewRoom {
             points: [P::EMPTY; POINTS],
-            surfaces: [Sight::EMPTY; COUNT],
+            surfaces: [[P::Scalar::ZERO; 2]; COUNT],
             patches: [Patch::EMPTY; PATCHES],
             sights: [Sight::EMPTY; PATCHES],
             runs: [[P::Scalar::ZERO; 2]; RUNS],
@@ -85,7 +85,7 @@ impl<P: Point, const POINTS: usize, const COUNT: usize, const FIRST: usize, cons
             runs: &mut self.runs,
             first_runs: &mut self.first_runs,
         };
-        let view = View::build(scene, Some(patches), &picture.camera(), memory).ok()?;
+        let view = View::build(scene, patches, &picture.camera(), memory).ok()?;
         Some(Seen {
             view,
             patches: count_of(patches.all()),

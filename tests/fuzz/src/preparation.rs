@@ -96,7 +96,7 @@ impl OfKind for Preparation {
         let mut of_view = ViewRoom::<P>::sized([0; 6]);
         let seen = lend(&mut bytes, |sizes| {
             of_view = ViewRoom::sized(sizes);
-            match View::build(&scene, Some(&patches), &camera, of_view.lend()) {
+            match View::build(&scene, &patches, &camera, of_view.lend()) {
                 Ok(_) => Stage::Done,
                 Err(ViewError::Memory(needs)) => {
                     let given =
@@ -108,7 +108,7 @@ impl OfKind for Preparation {
             }
         });
         let Some(view) =
-            seen.then(|| View::build(&scene, Some(&patches), &camera, of_view.lend()).expect("it was built before"))
+            seen.then(|| View::build(&scene, &patches, &camera, of_view.lend()).expect("it was built before"))
         else {
             return;
         };

@@ -17,7 +17,7 @@ use patchray::view::{Camera, Sight, View, ViewError, ViewMemory, ViewRay};
 #[repr(C)]
 pub struct LentView<P: Point> {
     points: Lent<P>,
-    surfaces: Lent<Sight<P::Scalar>>,
+    surfaces: Lent<[P::Scalar; 2]>,
     patches: Lent<Patch<P::Scalar>>,
     sights: Lent<Sight<P::Scalar>>,
     runs: Lent<[P::Scalar; 2]>,
@@ -66,7 +66,7 @@ unsafe extern "C" fn view<P: Point>(
 ) {
     // SAFETY: the caller keeps the contract of `slots`.
     let (scene, patches, memory) = unsafe { (scene.view(), patches.patches(), memory.memory()) };
-    *out = View::build(&scene, Some(&patches), camera, memory);
+    *out = View::build(&scene, &patches, camera, memory);
 }
 
 extern "C" fn view_ray<P: Point>(

@@ -117,7 +117,7 @@ impl<P: Views + Kind + Slot> Lines<P> {
             }
             let memory = &mut *self.view_memory;
             memory.points = field.take::<P>(memory.points_len / (size_of::<P>() / size_of::<P::Scalar>()))?.cast();
-            memory.surfaces = field.take(memory.surfaces_len)?;
+            memory.surfaces = field.take::<[P::Scalar; 2]>(memory.surfaces_len / 2)?.cast();
             memory.patches = field.take(memory.patches_len)?;
             memory.sights = field.take(memory.sights_len)?;
             memory.runs = field.take::<[P::Scalar; 2]>(memory.runs_len / 2)?.cast();
@@ -184,7 +184,8 @@ impl<P: Views + Kind + Slot> Lines<P> {
             self.camera = call.one(self.camera, false);
             let memory = &mut *self.view_memory;
             (memory.points, memory.points_len) = call.slots::<_, P>(memory.points, memory.points_len, true);
-            (memory.surfaces, memory.surfaces_len) = call.many(memory.surfaces, memory.surfaces_len, true);
+            (memory.surfaces, memory.surfaces_len) =
+                call.slots::<_, [P::Scalar; 2]>(memory.surfaces, memory.surfaces_len, true);
             (memory.patches, memory.patches_len) = call.many(memory.patches, memory.patches_len, true);
             (memory.sights, memory.sights_len) = call.many(memory.sights, memory.sights_len, true);
             (memory.runs, memory.runs_len) = call.slots::<_, [P::Scalar; 2]>(memory.runs, memory.runs_len, true);
@@ -218,7 +219,7 @@ impl<P: Views + Kind + Slot> Lines<P> {
             view.scene.references references_len, u32;
             view.patches.patches patches_len, patchray_patch<P::Scalar>;
             view.patches.first first_len, u32;
-            view.surfaces surfaces_len, patchray_sight<P::Scalar>;
+            view.surfaces surfaces_len, [P::Scalar; 2];
             view.sights sights_len, patchray_sight<P::Scalar>;
             view.runs runs_len, [P::Scalar; 2];
             view.first_runs first_runs_len, u32;
