@@ -110,7 +110,7 @@ pub struct Extent {
     pub surface_voxels: u32,
     /// The most spans in one of a view's scan lines (0 for rays of no view).
     pub spans: u32,
-    /// How often a method may walk the grid of one surface for one ray: 0, or 2 with a testing ray first.
+    /// How often a method may walk the grid of one surface, or the spans of a line, for one ray: 0, or 2 with a testing ray first.
     pub walks: u32,
     /// Whether the method is a clipping method, or falls back on one: these have no bound on clips and Newton iterations but the
     /// budget.

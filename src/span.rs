@@ -42,7 +42,7 @@ impl<S: Scalar> Span<S> {
 
 /// The spans around a ray, and others that end in the same bucket.
 #[derive(Clone, Copy, Debug)]
-pub struct InLine<'l, S> {
+pub(crate) struct InLine<'l, S> {
     pub(crate) spans: &'l [Span<S>],
     pub(crate) list: &'l [u32],
     pub(crate) x: S,
@@ -50,7 +50,7 @@ pub struct InLine<'l, S> {
     pub(crate) patches: &'l [Patch<S>],
 }
 
-impl<'l, S: Scalar> InLine<'l, S> {
+impl<S: Scalar> InLine<'_, S> {
     /// Skips the first ones that do not hold the ray.
     #[inline(always)]
     pub(crate) fn skip(&mut self) {
