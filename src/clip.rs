@@ -3,13 +3,14 @@
 //! The projected net's signed distances to a line through the ray are the coefficients of a polynomial in Bernstein form;
 //! where the convex hull of its control polygon does not meet zero, neither does the surface meet the ray.
 //!
-//! Source: T. Nishita, T. W. Sederberg and M. Kakimoto, "Ray tracing trimmed rational surface patches", SIGGRAPH 1990. With
-//! corrections by S. Campagna, P. Slusallek and H.-P. Seidel, "Ray tracing of spline surfaces", The Visual Computer 13(6),
-//! 1997, and by A. Efremov, V. Havran and H.-P. Seidel, "Robust and numerically stable Bézier clipping method for ray
-//! tracing NURBS surfaces", SCCG 2005.
+//! Source: T. Nishita, T. W. Sederberg and M. Kakimoto, "Ray tracing trimmed rational surface patches", SIGGRAPH 1990. A
+//! departure: the paper's clipping is corrected after Campagna, Slusallek and Seidel (1997), by a rule that the paper does not
+//! state; here lines that are near parallel are spread instead, as by A. Efremov, V. Havran and H.-P. Seidel, "Robust and
+//! numerically stable Bézier clipping method for ray tracing NURBS surfaces", SCCG 2005.
 
 use crate::bernstein::{Degrees, Direction, MAX_DEGREE};
 use crate::point::Flat;
+use crate::reading::{Ours, Reading};
 use crate::scalar::Scalar;
 
 /// What a clip leaves of an interval.
@@ -62,7 +63,7 @@ pub(crate) fn chords<S: Scalar>([p00, p10, p01, p11]: [[S; 2]; 4]) -> [[S; 2]; 2
 /// The lines are Nishita, Sederberg and Kakimoto's: L_u, for clipping u, along the net's mean chord in v, and L_v along that in
 /// u, so that distances to L_u change with u and hardly with v.
 #[inline(always)]
-fn normal<F: Flat>(corners: [[F::Scalar; 2]; 4], direction: Direction) -> [F::Scalar; 2] {
+fn normal<F: Flat>(reading: impl Reading, corners: [[F::Scalar; 2]; 4], direction: Direction) -> [F::Scalar; 2] {
     let [u, v] = chords(corners);
     let dot = u[0] * v[0] + u[1] * v[1];
     let (uu, vv) = (u[0] * u[0] + u[1] * u[1], v[0] * v[0] + v[1] * v[1]);
@@ -71,7 +72,8 @@ fn normal<F: Flat>(corners: [[F::Scalar; 2]; 4], direction: Direction) -> [F::Sc
     // clips on the common teapot are of that kind, and a third of the time is lost. At 6° it is the other way round.
     // What is so small that digits vanish is looked at with care; and so are null chords.
     let square = uu * vv;
-    if dot * dot <= F::Scalar::from_f64(PARALLEL) * square && square * F::Scalar::EPSILON > F::Scalar::MIN_POSITIVE {
+    let apart = !reading.spread_lines() || dot * dot <= F::Scalar::from_f64(PARALLEL) * square;
+    if apart && square * F::Scalar::EPSILON > F::Scalar::MIN_POSITIVE {
         let [x, y] = turned(match direction {
             Direction::U => v,
             Direction::V => u,
@@ -137,25 +139,38 @@ pub(crate) fn turned<S: Scalar>([x, y]: [S; 2]) -> [S; 2] {
 /// A clip is wider than the hull's by what rounding may have done, so no root is lost to rounding.
 #[inline(always)]
 pub fn clip<F: Flat>(degrees: Degrees, net: &[F], direction: Direction, noise: &Noise<F::Scalar>) -> Clip<F::Scalar> {
+    clip_by(Ours, degrees, net, direction, noise)
+}
+
+/// [`clip`] by another reading of the paper.
+#[inline(always)]
+pub(crate) fn clip_by<F: Flat>(
+    reading: impl Reading,
+    degrees: Degrees,
+    net: &[F],
+    direction: Direction,
+    noise: &Noise<F::Scalar>,
+) -> Clip<F::Scalar> {
     // As in evaluation, the shapes of nearly all models are unrolled.
     if let (Degrees { u: 3, v: 3 }, Ok(net)) = (degrees, <&[F; 16]>::try_from(net)) {
-        return clip_unrolled::<F, 4, 16>(net, direction, noise);
+        return clip_unrolled::<F, 4, 16>(reading, net, direction, noise);
     }
     if let (Degrees { u: 2, v: 2 }, Ok(net)) = (degrees, <&[F; 9]>::try_from(net)) {
-        return clip_unrolled::<F, 3, 9>(net, direction, noise);
+        return clip_unrolled::<F, 3, 9>(reading, net, direction, noise);
     }
-    clip_any_degree(degrees, net, direction, noise)
+    clip_any_degree(reading, degrees, net, direction, noise)
 }
 
 #[inline(never)]
 fn clip_any_degree<F: Flat>(
+    reading: impl Reading,
     degrees: Degrees,
     net: &[F],
     direction: Direction,
     noise: &Noise<F::Scalar>,
 ) -> Clip<F::Scalar> {
     let (rows, columns) = (degrees.rows(), degrees.columns());
-    let normal = normal::<F>(corners(degrees, net), direction);
+    let normal = normal::<F>(reading, corners(degrees, net), direction);
     let mut extents = [[F::Scalar::INFINITY, F::Scalar::LEAST]; MAX_DEGREE + 1];
     let error = noise.across(normal);
     for (i, row) in net.chunks_exact(columns).enumerate() {
@@ -180,12 +195,13 @@ fn clip_any_degree<F: Flat>(
 /// [`clip`] for an order known when compiling; `N` is `ORDER²`.
 #[inline(always)]
 fn clip_unrolled<F: Flat, const ORDER: usize, const N: usize>(
+    reading: impl Reading,
     net: &[F; N],
     direction: Direction,
     noise: &Noise<F::Scalar>,
 ) -> Clip<F::Scalar> {
     const { assert!(ORDER * ORDER == N && ORDER > 1) }
-    let normal = normal::<F>([net[0], net[N - ORDER], net[ORDER - 1], net[N - 1]].map(F::position), direction);
+    let normal = normal::<F>(reading, [net[0], net[N - ORDER], net[ORDER - 1], net[N - 1]].map(F::position), direction);
     let error = noise.across(normal);
     let mut all = [[F::Scalar::ZERO; 2]; N];
     for k in 0..N {

@@ -10,7 +10,7 @@
 //! (1997) found, where a region shrinks to a point that the ray passes by.
 
 use crate::bernstein::{BasisView, Direction, Full};
-use crate::clip::{Clip, chords, clip, corners, turned};
+use crate::clip::{Clip, chords, clip_by, corners, turned};
 use crate::contract::{Contraction, Single, contract, is_provable, single};
 use crate::graze::{Across, Met, across, first_met, on_line, polished};
 use crate::limits::{Limit, Limits, Work, spend};
@@ -21,6 +21,7 @@ use crate::passed::{all_pass, passes};
 use crate::planes::{Planes, project_net};
 use crate::point::Point;
 use crate::ray::Incidence;
+use crate::reading::{Ours, Reading};
 use crate::region::{Order, Region};
 use crate::root::{Place, Root};
 use crate::roots::{Seen, Sighting};
@@ -99,7 +100,7 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
             Single::Nothing => {}
             Single::Root(root, _) => found(root, work),
             Single::Unproved => {
-                let mut roots = self.search(Order::Any, Some(region))?;
+                let mut roots = self.search(Ours, Order::Any, Some(region))?;
                 // Ends with the roots, whose search counts clips against a budget.
                 while let Some(root) = roots.next(work)? {
                     found(root, work);
@@ -112,17 +113,28 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
     /// The search for all points where the ray's line meets the surface, in `order`.
     #[inline(always)]
     pub fn roots(&mut self, order: Order<P::Parameter>) -> Result<Roots<'_, 's, 'm, P>, Limit> {
+        self.roots_by(Ours, order)
+    }
+
+    /// [`Clipper::roots`] by another reading of the paper.
+    #[inline(always)]
+    pub(crate) fn roots_by<R: Reading>(
+        &mut self,
+        reading: R,
+        order: Order<P::Parameter>,
+    ) -> Result<Roots<'_, 's, 'm, P, R>, Limit> {
         self.project()?;
-        self.search(order, None)
+        self.search(reading, order, None)
     }
 
     /// [`Clipper::roots`] of a region of the surface, or all of it, from the projected net.
     #[inline]
-    pub(crate) fn search(
+    pub(crate) fn search<R: Reading>(
         &mut self,
+        reading: R,
         order: Order<P::Parameter>,
         region: Option<Region<P::Parameter>>,
-    ) -> Result<Roots<'_, 's, 'm, P>, Limit> {
+    ) -> Result<Roots<'_, 's, 'm, P, R>, Limit> {
         let Clipper { surface, planes, limits, room } = self;
         let ClipRoom { whole, part, pending, roots: found, basis } = &mut **room;
         let whole: &[P::Flat] = whole.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
@@ -137,6 +149,7 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
         found.clear();
         let open = part.is_some();
         Ok(Roots {
+            reading,
             surface,
             planes,
             limits,
@@ -157,7 +170,8 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
 /// The search for all points where a ray's line meets a surface, or a region of it: they are asked for one by one.
 ///
 /// A machine holds this code once, whatever becomes of the roots: it is most of what clipping takes.
-pub struct Roots<'a, 's, 'm, P: Point> {
+pub struct Roots<'a, 's, 'm, P: Point, R = Ours> {
+    reading: R,
     surface: &'a Surface<'m, P>,
     planes: &'a Planes<P::Scalar>,
     limits: &'a Limits<P::Scalar>,
@@ -178,7 +192,7 @@ pub struct Roots<'a, 's, 'm, P: Point> {
     basis: &'a mut BasisView<'s, P::Scalar>,
 }
 
-impl<P: Point> Roots<'_, '_, '_, P> {
+impl<P: Point, R: Reading> Roots<'_, '_, '_, P, R> {
     /// Whether regions wait that may hold more roots.
     #[inline(always)]
     pub fn regions_wait(&self) -> bool {
@@ -207,6 +221,7 @@ impl<P: Point> Roots<'_, '_, '_, P> {
         else {
             return Ok(None);
         };
+        let reading = self.reading;
         let (exact, tolerance) = (&*exact, exact.tolerance);
         // Whether the last clip, which was of the other parameter, found it settled; or left it as it was.
         let (mut settled, mut stuck) = (false, false);
@@ -226,64 +241,85 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                     }
                     // Most halves of a small region, which only a fold keeps from being proved, lie apart from the ray across
                     // it; of larger ones a clip is the better question.
-                    let folded = is_provable(surface, part.region.widths(), exact);
+                    let folded = reading.look_across() && is_provable(surface, part.region.widths(), exact);
                     if !folded || !matches!(across(part.degrees, part.net, &part.noise(tolerance)), Across::Apart) {
                         break;
                     }
                 }
                 (self.open, settled, stuck) = (true, false, false);
             }
-            spend(&mut work.clip_steps, limits.clip_steps, Limit::ClipSteps)?;
             let direction = part.region.next;
             part.region.next = direction.other();
-            let noise = part.noise(tolerance);
-            let clipped = clip(part.degrees, part.net, direction, &noise);
-            P::Scalar::tell(|| told(&part.region, direction, &clipped));
-            let mut step = match clipped {
-                Clip::Nothing => Step::Done(None),
-                Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
-                    part.narrow(direction, [from, to]);
-                    (settled, stuck) = (false, false);
-                    if !self.bisected || may_be_single(surface, part, exact) {
-                        match contract(surface, whole, part.region, part.error, exact, limits, basis, work)? {
-                            Contraction::Open => Step::On,
-                            Contraction::Done(place) => Step::Done(place.map(crossed)),
+            let widths = part.region.widths();
+            let is_point = |width: P::Scalar| {
+                !reading.newton_end() && width <= P::Scalar::EPSILON.sqrt() * P::Scalar::from_f64(END)
+            };
+            let mut step = if widths.into_iter().all(is_point) {
+                Step::Done(Some(middle(surface, whole, part, basis)?))
+            } else {
+                spend(&mut work.clip_steps, limits.clip_steps, Limit::ClipSteps)?;
+                let noise = part.noise(tolerance);
+                let clipped = clip_by(reading, part.degrees, part.net, direction, &noise);
+                P::Scalar::tell(|| told(&part.region, direction, &clipped));
+                match clipped {
+                    Clip::Nothing => Step::Done(None),
+                    Clip::Part([from, to]) if to - from <= P::Scalar::ONE - limits.clip_threshold => {
+                        part.narrow(direction, [from, to]);
+                        (settled, stuck) = (false, false);
+                        if reading.newton_end() && (!self.bisected || may_be_single(surface, part, exact)) {
+                            match contract(surface, whole, part.region, part.error, exact, limits, basis, work)? {
+                                Contraction::Open => Step::On,
+                                Contraction::Done(place) => Step::Done(place.map(crossed)),
+                            }
+                        } else {
+                            Step::On
                         }
-                    } else {
+                    }
+                    Clip::Part(_) if is_point(widths[direction as usize]) => Step::Settled,
+                    // A width that cannot be halved is as settled as one that need not be. One that moves nothing, as along a
+                    // collapsed edge, is not to be halved when the other, settled as seen across its own line, is what keeps it
+                    // from being clipped.
+                    //
+                    // Along a collapsed edge each half is as long as the whole, down to the edge: the other parameter is clipped
+                    // toward it as long as that shortens it.
+                    Clip::Part(_) if !(stuck || settled) && part.is_collapsed(direction) => {
+                        stuck = true;
                         Step::On
                     }
-                }
-                // A width that cannot be halved is as settled as one that need not be. One that moves nothing, as along a
-                // collapsed edge, is not to be halved when the other, settled as seen across its own line, is what keeps it
-                // from being clipped.
-                //
-                // Along a collapsed edge each half is as long as the whole, down to the edge: the other parameter is clipped
-                // toward it as long as that shortens it.
-                Clip::Part(_) if !(stuck || settled) && part.is_collapsed(direction) => {
-                    stuck = true;
-                    Step::On
-                }
-                Clip::Part(_) => {
-                    let halves = || {
-                        let halved = if settled { part.longer() } else { part.much_longer().unwrap_or(direction) };
-                        part.region.halves(halved).map_or(Step::Settled, Step::Bisect)
-                    };
-                    match across(part.degrees, part.net, &noise) {
-                        Across::Apart => Step::Done(None),
-                        Across::Line(along) => {
-                            if passes(surface, whole, &part.region, Some(turned(along)), exact, basis)? {
-                                Step::Done(None)
-                            } else {
-                                match on_line(surface, planes, whole, &part.region, along, exact, part.error, basis)? {
-                                    Some(met) => Step::Done(Some(met)),
-                                    None => halves(),
+                    Clip::Part(_) => {
+                        let halves = || {
+                            let much_longer = part.much_longer().filter(|_| reading.long_side());
+                            let halved = if settled { part.longer() } else { much_longer.unwrap_or(direction) };
+                            part.region.halves(halved).map_or(Step::Settled, Step::Bisect)
+                        };
+                        let seen =
+                            if reading.look_across() { across(part.degrees, part.net, &noise) } else { Across::Open };
+                        match seen {
+                            Across::Apart => Step::Done(None),
+                            Across::Line(along) => {
+                                if passes(surface, whole, &part.region, Some(turned(along)), exact, basis)? {
+                                    Step::Done(None)
+                                } else {
+                                    match on_line(
+                                        surface,
+                                        planes,
+                                        whole,
+                                        &part.region,
+                                        along,
+                                        exact,
+                                        part.error,
+                                        basis,
+                                    )? {
+                                        Some(met) => Step::Done(Some(met)),
+                                        None => halves(),
+                                    }
                                 }
                             }
+                            Across::Open => halves(),
                         }
-                        Across::Open => halves(),
                     }
+                    Clip::Settled => Step::Settled,
                 }
-                Clip::Settled => Step::Settled,
             };
             if let (Step::Settled, true) = (&step, settled) {
                 // A region as small as the error of its net, or as thin, holds a root, a grazing one, if some place of it
@@ -323,11 +359,13 @@ impl<P: Point> Roots<'_, '_, '_, P> {
                         let mut root = place.root(&surface.net, whole, planes, exact, basis)?;
                         root.incidence = root.incidence.max(incidence);
                         let seen = Seen { surface, planes, whole, exact };
-                        let sighting = seen.add(&mut root, found, basis)?;
+                        let again = reading.known_roots();
+                        let sighting = if again { seen.add(&mut root, found, basis)? } else { Sighting::New };
                         if sighting != Sighting::Known {
                             self.sighting = sighting;
                             return Ok(Some(root));
                         }
+                        work.intersection_points += u32::from(planes.t_in_interval(root.depth).is_some());
                     }
                 }
             }
@@ -375,6 +413,22 @@ fn told<A: Parameter>(region: &Region<A>, direction: Direction, clipped: &Clip<A
         in_v: direction == Direction::V,
         left,
     }
+}
+
+/// By the paper's letter an interval this narrow is one point, as a multiple of the square root of a rounding. Were it narrower,
+/// rounding would let more points be found twice, and were it wider, they would be less exact.
+const END: f64 = 0.0625;
+
+/// The middle of a region that is a point: the end of the paper's clipping.
+#[cold]
+#[inline(never)]
+fn middle<P: Point>(
+    surface: &Surface<'_, P>,
+    whole: &[P::Flat],
+    part: &Part<'_, P::Flat>,
+    basis: &mut BasisView<'_, P::Scalar>,
+) -> Result<Met<P::Parameter>, Limit> {
+    Ok(crossed(Place::look(part.region.middle(), surface.net.degrees(), whole, basis)?))
 }
 
 /// What a clip leads to.

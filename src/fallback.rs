@@ -8,6 +8,7 @@ use crate::clipper::{ClipRoom, Clipper};
 use crate::limits::{Limit, Limits, Work};
 use crate::planes::Planes;
 use crate::point::Point;
+use crate::reading::Ours;
 use crate::region::{Order, Region};
 use crate::root::Root;
 use crate::surface::Surface;
@@ -64,7 +65,7 @@ impl<P: Point> Fallback<P> for ClipRoom<'_, P> {
     ) -> Result<(), Limit> {
         let mut clipper = Clipper { surface, planes, limits, room: self };
         clipper.project()?;
-        let mut roots = clipper.search(Order::Any, Some(region))?;
+        let mut roots = clipper.search(Ours, Order::Any, Some(region))?;
         // Ends with the roots, whose search counts clips against a budget.
         while let Some(root) = roots.next(work)? {
             found(root, work);

@@ -68,6 +68,7 @@ pub mod scalar;
 pub mod told;
 
 pub mod ray;
+pub mod reading;
 
 pub mod limits;
 

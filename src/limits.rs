@@ -258,7 +258,8 @@ counters! {
     excluded,
     /// The same: patches met that the fallback decided.
     handed_over,
-    /// Roots found in the interval, each time they were found: the paper's "intersection points".
+    /// Roots found in the interval, each time they were found, those that clipping knows again among them: the paper's
+    /// "intersection points". How often clipping finds one again depends on how it ends.
     intersection_points,
     /// Coherent: points confirmed at once, alone in the testing ray's list.
     verified,

@@ -11,7 +11,7 @@ use crate::point::Point;
 use crate::scalar::{Scalar, Vector3};
 use crate::surface::{Net, SHEAR};
 
-/// Below this sine of the angle between v1 and v2 the shorter is replaced by one orthogonal to the longer. Padding a box
+/// A departure: below this sine of the angle between v1 and v2 the shorter is replaced by one orthogonal to the longer. Padding a box
 /// by ρ lengthens its edges by ρ over this sine, so smaller values make slivers fatter; larger ones spoil the starts on
 /// sheared patches.
 const LEAST_SINE: f64 = 0.05;

@@ -11,6 +11,7 @@ use crate::limits::{GaveUp, Limit, Limits, Work, spend};
 use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray, RayError};
+use crate::reading::Reading;
 use crate::root::Root;
 use crate::scalar::{Scalar, Vector3};
 use crate::story::Event;
@@ -343,13 +344,14 @@ impl<'m, P: Point> Scene<'m, P> {
         surface.net.normal(hit.u, hit.v, basis).map_err(|Full| give_up(Limit::Scratch))
     }
 
-    /// The closest hit of a ray over all surfaces, those in front first.
+    /// The closest hit of a ray over all surfaces, those in front first. By the paper's letter all are searched that the ray meets.
     ///
     /// `search` is given a surface, the ray's planes and the range of depths in which a root matters, and returns the
     /// closest root it finds. `work` is set to what this call did.
     #[inline]
     pub fn closest(
         &self,
+        reading: impl Reading,
         ray: &Ray<P::Scalar>,
         interval: &Interval<P::Scalar>,
         limits: &Limits<P::Scalar>,
@@ -375,7 +377,7 @@ impl<'m, P: Point> Scene<'m, P> {
             if best.is_none_or(closer) {
                 best = Some((root, surface.number, t));
             }
-            Ok(root.depth)
+            Ok(if reading.pruning() { root.depth } else { P::Scalar::INFINITY })
         });
         let best = best.map(|(root, surface, t)| root.hit(surface, t));
         match ended {

@@ -1,9 +1,9 @@
 //! Subdivision of surfaces into patches, and the binary tree over them.
 //!
 //! Source: Barth and Stürzlinger (1993); the paper's preprocessing step. A piece is halved in the direction of larger
-//! curvature until it is flat. What the paper leaves open: "flat" is that bend in u, bend in v and twist together, bounds
-//! of the distance between the piece and its parallelogram, are at most the flatness times the scene's diagonal, and a share of
-//! the surface's size.
+//! curvature until it is flat. What the paper leaves open: "curvature" is the bound of the distance between chord and surface,
+//! and "flat" is that bend in u, bend in v and twist together, bounds of the distance between the piece and its parallelogram, are
+//! at most the flatness times the scene's diagonal, and a share of the surface's size.
 
 use crate::arena::{Arena, Need};
 use crate::bernstein::Full;
@@ -12,6 +12,7 @@ use crate::frame::{Frame, PADDING};
 use crate::measure::Measure;
 use crate::patch::{Parallelepiped, Patch, Patches};
 use crate::point::Point;
+use crate::reading::{Ours, Reading};
 use crate::scalar::Scalar;
 use crate::surface::{Net, Surface};
 use crate::tree::Tree;
@@ -164,6 +165,19 @@ pub fn subdivide<'m, 'n, P: Point>(
     memory: PatchMemory<'m, P::Scalar>,
     tree: Option<TreeMemory<'m, P::Scalar>>,
 ) -> Result<Subdivided<'m, P::Scalar>, SubdivideError> {
+    subdivide_by(Ours, surfaces, frame, options, scratch, memory, tree)
+}
+
+/// [`subdivide`] by another reading of the paper.
+pub fn subdivide_by<'m, 'n, P: Point>(
+    reading: impl Reading,
+    surfaces: impl Iterator<Item = Surface<'n, P>>,
+    frame: &Frame<P::Scalar>,
+    options: &Subdivision<P::Scalar>,
+    scratch: &mut SubdivideScratchView<'_, P>,
+    memory: PatchMemory<'m, P::Scalar>,
+    tree: Option<TreeMemory<'m, P::Scalar>>,
+) -> Result<Subdivided<'m, P::Scalar>, SubdivideError> {
     let mut patches = Arena::new(memory.patches);
     let mut first = Arena::new(memory.first);
     let wants_tree = tree.is_some();
@@ -202,7 +216,7 @@ pub fn subdivide<'m, 'n, P: Point>(
             };
             let measure = Measure::of(&piece, padding);
             let flat = measure.bend_u + measure.bend_v + measure.twist <= tolerance;
-            let direction = if flat { None } else { direction_to_halve(&measure, domain.levels(), depth) };
+            let direction = if flat { None } else { direction_to_halve(reading, &measure, domain.levels(), depth) };
             let Some(along_u) = direction else {
                 if patches.len() - begin >= options.patches_per_surface as usize {
                     return Err(SubdivideError::Patches { surface: number });
@@ -233,12 +247,21 @@ pub fn subdivide<'m, 'n, P: Point>(
 
 /// Whether to halve in u (true) or in v, `None` if both directions are at their depth.
 ///
-/// The direction of larger bend; where both are straight (a twisted bilinear piece), across the longer side.
-fn direction_to_halve<S: Scalar>(measure: &Measure<S>, levels: [u32; 2], depth: u32) -> Option<bool> {
-    let prefer_u = if measure.bend_u == measure.bend_v {
+/// The direction of larger bend, or of more turning; where both are straight (a twisted bilinear piece), across the longer side.
+fn direction_to_halve<S: Scalar>(
+    reading: impl Reading,
+    measure: &Measure<S>,
+    levels: [u32; 2],
+    depth: u32,
+) -> Option<bool> {
+    let [bend_u, bend_v] = [measure.bend_u, measure.bend_v];
+    let prefer_u = if bend_u == bend_v {
         measure.sides[0] >= measure.sides[1]
+    } else if reading.bend_halving() {
+        bend_u > bend_v
     } else {
-        measure.bend_u > measure.bend_v
+        // The bend is an eighth of the second derivative's bound over the piece; the turning is that over the side.
+        bend_u * measure.sides[1] > bend_v * measure.sides[0]
     };
     match (levels[0] < depth, levels[1] < depth) {
         (true, true) => Some(prefer_u),

@@ -8,6 +8,7 @@ use crate::limits::{Acceptance, Limit, Limits, Work};
 use crate::parameter::Parameter;
 use crate::patch::{Crossing, Patch};
 use crate::planes::{DepthRange, Planes};
+use crate::reading::Reading;
 use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::story::Event;
@@ -77,6 +78,7 @@ pub enum Verdict {
 ///
 /// Source: the paper's section "An Improvement of Bézier Clipping".
 pub fn verdict<S: Scalar, A: Parameter<Scalar = S>>(
+    reading: impl Reading,
     along: &InGrid<'_, S>,
     planes: &Planes<S>,
     root: &Root<A>,
@@ -94,7 +96,7 @@ pub fn verdict<S: Scalar, A: Parameter<Scalar = S>>(
         } else if other.is_none() {
             other = Some(listed.patch.domain());
         }
-        Ok(!critical && (owner.is_none() || other.is_none()))
+        Ok(!reading.quick_verdict() || !critical && (owner.is_none() || other.is_none()))
     })?;
     Ok(match (owner, other) {
         _ if critical => Verdict::Critical,

@@ -8,6 +8,7 @@ use patchray::method::Remembered;
 use patchray::method::{ClipScratch, Scratch, clipping, clipping_coherent, newton, newton_coherent};
 use patchray::point::Plain;
 use patchray::ray::{Hit, Interval, Ray};
+use patchray::reading::Ours;
 use patchray::scalar::Scalar;
 use patchray_host::scene::camera::Camera;
 use patchray_host::scene::shapes::Random;
@@ -294,7 +295,7 @@ fn the_worst_case_is_come_near() {
     // The original method's search, but of no effect: a hit would end the way through the scene.
     let mut work = Work::default();
     let whole = Interval::new(-f64::INFINITY, f64::INFINITY).unwrap();
-    let no_pruning = scene.closest(&ray, &whole, &limits, &mut work, |surface, planes, _, work| {
+    let no_pruning = scene.closest(Ours, &ray, &whole, &limits, &mut work, |surface, planes, _, work| {
         let mut descent = tree.of_surface(&patches, surface.number as usize).unwrap();
         while let Some((patch, crossing)) = descent.next_patch(planes, &limits, work)? {
             let start = patch.parallelogram(&crossing).unwrap();

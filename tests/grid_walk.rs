@@ -7,6 +7,7 @@ use patchray::limits::{Limits, Work};
 use patchray::method::{Scratch, newton_coherent};
 use patchray::point::Plain;
 use patchray::ray::Interval;
+use patchray::reading::Ours;
 use patchray::scalar::Scalar;
 use patchray::subdivide::Subdivision;
 use patchray_host::scene::model::Model;
@@ -64,7 +65,7 @@ where
         };
         let mut sum = 0;
         let mut work = Work::default();
-        let searched = scene.closest(&ray, &interval, &limits, &mut work, |surface, planes, range, _| {
+        let searched = scene.closest(Ours, &ray, &interval, &limits, &mut work, |surface, planes, range, _| {
             let k = surface.number as usize;
             let grid = grids.of_surface(k).unwrap();
             let (mut found, mut set) = (0_usize, BTreeSet::new());

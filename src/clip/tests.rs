@@ -2,6 +2,7 @@ extern crate std;
 
 use super::*;
 use crate::bernstein::Tuple;
+use crate::reading::Switches;
 use patchray_host::scene::shapes::Random;
 use std::vec::Vec;
 
@@ -101,7 +102,8 @@ fn what_varies_by_less_than_the_tolerance_is_settled() {
 fn lines_are_never_near_parallel() {
     let corners = |u: [f64; 2], v: [f64; 2]| [[0.0, 0.0], u, v, [u[0] + v[0], u[1] + v[1]]];
     let angle = |u: [f64; 2], v: [f64; 2]| {
-        let [a, b] = [Direction::U, Direction::V].map(|direction| normal::<Tuple<f64, 2>>(corners(u, v), direction));
+        let [a, b] =
+            [Direction::U, Direction::V].map(|direction| normal::<Tuple<f64, 2>>(Ours, corners(u, v), direction));
         let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
         cross.abs().atan2(dot.abs()).to_degrees()
     };
@@ -118,11 +120,13 @@ fn lines_are_never_near_parallel() {
         assert!((angle(u, v) - 90.0).abs() < 1e-9, "{u:?} {v:?}: {}", angle(u, v));
     }
     // Others are the chords' own, and follow them exactly.
-    assert_eq!(normal::<Tuple<f64, 2>>(corners([1.0, 0.0], [1.0, 0.5]), Direction::U), [-1.0, 2.0]);
+    assert_eq!(normal::<Tuple<f64, 2>>(Ours, corners([1.0, 0.0], [1.0, 0.5]), Direction::U), [-1.0, 2.0]);
     assert!((angle([1.0, 0.0], [1.0, 0.2]) - 0.2_f64.atan().to_degrees()).abs() < 1e-9);
     // Each spread line stays on the side of its own chord.
-    let [a, b] = [Direction::U, Direction::V].map(|d| normal::<Tuple<f64, 2>>(corners([1.0, 0.0], [1.0, 0.01]), d));
-    let [c, d] = [Direction::U, Direction::V].map(|d| normal::<Tuple<f64, 2>>(corners([1.0, 0.0], [1.0, -0.01]), d));
+    let [a, b] =
+        [Direction::U, Direction::V].map(|d| normal::<Tuple<f64, 2>>(Ours, corners([1.0, 0.0], [1.0, 0.01]), d));
+    let [c, d] =
+        [Direction::U, Direction::V].map(|d| normal::<Tuple<f64, 2>>(Ours, corners([1.0, 0.0], [1.0, -0.01]), d));
     assert!(a[0] * b[1] - a[1] * b[0] < 0.0 && c[0] * d[1] - c[1] * d[0] > 0.0, "{a:?} {b:?} {c:?} {d:?}");
 }
 
@@ -153,4 +157,14 @@ fn weights_do_not_move_what_a_clip_keeps() {
         let Clip::Part([from, to]) = clip(degrees, &rational, direction, &EXACT) else { panic!() };
         assert!(from <= low && high <= to && to - from < 0.75, "{direction:?} {from} {to} {low}");
     }
+}
+
+/// Without spreading, lines follow the chords however nearly parallel these are.
+#[test]
+fn lines_along_near_parallel_chords_are_spread_unless_the_letter_is_kept() {
+    let corners = [[0.0; 2], [1.0, 0.0], [1.0, 0.01], [2.0, 0.01]];
+    let of = |reading: Switches| normal::<Tuple<f64, 2>>(reading, corners, Direction::U);
+    assert_eq!(of(Switches::letter()), [-0.02, 2.0]);
+    assert_eq!(of(Switches::ours()), normal::<Tuple<f64, 2>>(Ours, corners, Direction::U));
+    assert_ne!(of(Switches::ours()), of(Switches::letter()));
 }

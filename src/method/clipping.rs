@@ -1,7 +1,8 @@
 //! The original subdivision method: Bézier clipping.
 //!
-//! Each surface that the ray may meet is projected and clipped, without patches and without a grid. All roots are found and
-//! count as intersection points, and the closest is the answer. A whole surface behind the closest hit so far is left out.
+//! Each surface that the ray may meet is projected and clipped, without patches and without a grid. All its roots are found and
+//! count as intersection points, and the closest is the answer. A departure: a whole surface behind the closest hit so far is
+//! left out.
 //!
 //! Source: Nishita, Sederberg and Kakimoto (1990); the paper's section "Clipping Process of Bézier Clipping". See
 //! [`crate::clipper`].
@@ -11,6 +12,7 @@ use crate::clipper::{ClipRoom, Clipper};
 use crate::limits::{GaveUp, Limits, Work};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
+use crate::reading::{Ours, Reading};
 use crate::region::Order;
 use crate::scene::Scene;
 use heapless::vec::VecView;
@@ -25,10 +27,24 @@ pub fn closest<P: Point>(
     room: &mut ClipRoom<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    scene.closest(ray, interval, limits, work, |surface, planes, _, work| {
+    closest_by(Ours, scene, ray, interval, limits, room, work)
+}
+
+/// [`closest`] by another reading of the paper.
+#[inline(always)]
+pub fn closest_by<P: Point>(
+    reading: impl Reading,
+    scene: &Scene<'_, P>,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    room: &mut ClipRoom<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    scene.closest(reading, ray, interval, limits, work, |surface, planes, _, work| {
         let mut best = None;
         let mut clipper = Clipper { surface, planes, limits, room };
-        let mut roots = clipper.roots(Order::Any)?;
+        let mut roots = clipper.roots_by(reading, Order::Any)?;
         // Ends with the roots.
         while let Some(root) = roots.next(work)? {
             keep_closest(&mut best, root, planes, &mut work.intersection_points);

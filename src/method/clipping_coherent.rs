@@ -20,6 +20,7 @@ use crate::parameter::Parameter;
 use crate::patch::Patches;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
+use crate::reading::{Ours, Reading};
 use crate::region::Order;
 use crate::root::Root;
 use crate::scalar::Scalar;
@@ -45,14 +46,32 @@ pub fn closest<P: Point>(
     room: &mut ClipRoom<'_, P>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    closest_by(Ours, scene, patches, grids, memory, scan_line, ray, interval, limits, room, work)
+}
+
+/// [`closest`] by another reading of the paper.
+#[inline(always)]
+pub fn closest_by<P: Point>(
+    reading: impl Reading,
+    scene: &Scene<'_, P>,
+    patches: &Patches<'_, P::Scalar>,
+    grids: &Grids<'_, P::Scalar>,
+    memory: &mut [Remembered<P::Scalar>],
+    scan_line: u32,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    room: &mut ClipRoom<'_, P>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     led(scan_line.wrapping_add(1), work, |stamp, recalled, work| {
-        scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
+        scene.closest(reading, ray, interval, limits, work, |surface, planes, range, work| {
             let number = surface.number as usize;
             let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
             let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
             let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
             let clipper = Clipper { surface, planes, limits, room };
-            search(clipper, &InGrid { grid, patches }, range.min, slot, stamp, recalled, work)
+            search(reading, clipper, &InGrid { grid, patches }, range.min, slot, stamp, recalled, work)
         })
     })
 }
@@ -60,6 +79,7 @@ pub fn closest<P: Point>(
 /// The closest root on one surface in the ray's interval, and what to remember of it.
 #[inline(always)]
 fn search<P: Point>(
+    reading: impl Reading,
     mut clipper: Clipper<'_, '_, '_, P>,
     along: &InGrid<'_, P::Scalar>,
     nearest: P::Scalar,
@@ -68,7 +88,7 @@ fn search<P: Point>(
     recalled: &mut bool,
     work: &mut Work,
 ) -> Result<Option<Root<P::Parameter>>, Limit> {
-    let previous = slot.recall(stamp);
+    let previous = slot.recall(stamp).filter(|_| reading.coherence());
     *recalled |= previous.is_some();
     let (planes, limits) = (clipper.planes, clipper.limits);
     let mut best = None;
@@ -78,7 +98,7 @@ fn search<P: Point>(
     if let Some(previous) = previous {
         P::Scalar::tell(|| Event::Remembered(previous.map(P::Scalar::to_f64)));
     }
-    let mut roots = clipper.roots(Order::around(previous.map(|at| at.map(P::Parameter::new))))?;
+    let mut roots = clipper.roots_by(reading, Order::around(previous.map(|at| at.map(P::Parameter::new))))?;
     // Ends with the roots.
     while let Some(root) = roots.next(work)? {
         if planes.is_before_interval(root.depth) {
@@ -92,7 +112,11 @@ fn search<P: Point>(
             continue;
         }
         first = false;
-        let verdict = verdict(along, planes, &root, nearest, limits, work)?;
+        let verdict = if reading.verification() {
+            verdict(reading, along, planes, &root, nearest, limits, work)?
+        } else {
+            Verdict::Closest
+        };
         P::Scalar::tell(|| if verdict == Verdict::Closest { Event::Verified } else { Event::Refused });
         match verdict {
             Verdict::Closest => {

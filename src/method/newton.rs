@@ -1,8 +1,8 @@
 //! The original numerical method: Barth and Stürzlinger's, with Newton's method in the two-dimensional system.
 //!
 //! The ray is traced through the binary tree of each surface that it may meet. Every patch whose parallelepiped it meets
-//! gives Newton's method a start; all roots count as intersection points, and the closest is the answer. Within a surface
-//! nothing is left out for being farther than a root already found; a whole surface behind the closest hit so far is.
+//! gives Newton's method a start; all roots count as intersection points, and the closest is the answer. A departure: patches
+//! and surfaces behind the closest hit on the surfaces before are left out.
 //!
 //! Source: Barth and Stürzlinger (1993); the paper's section "Barth and Stürzlinger's Algorithm".
 
@@ -15,6 +15,7 @@ use crate::patch::Patches;
 use crate::planes::{DepthRange, Planes};
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
+use crate::reading::{Ours, Reading};
 use crate::root::Root;
 use crate::scene::Scene;
 use crate::surface::Surface;
@@ -35,7 +36,23 @@ pub fn closest<P: Point, F: Fallback<P>>(
     scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
-    scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
+    closest_by(Ours, scene, patches, tree, ray, interval, limits, scratch, work)
+}
+
+/// [`closest`] by another reading of the paper.
+#[inline(always)]
+pub fn closest_by<P: Point, F: Fallback<P>>(
+    reading: impl Reading,
+    scene: &Scene<'_, P>,
+    patches: &Patches<'_, P::Scalar>,
+    tree: &Tree<'_, P::Scalar>,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P, F>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    scene.closest(reading, ray, interval, limits, work, |surface, planes, range, work| {
         let mut best = None;
         roots(surface, patches, tree, planes, range, limits, scratch, work, |root, work| {
             keep_closest(&mut best, root, planes, &mut work.intersection_points);

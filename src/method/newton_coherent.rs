@@ -1,6 +1,6 @@
 //! The improved numerical method: scan-line coherence, and a testing ray that verifies the closest hit.
 //!
-//! The first ray of a scan line that meets a surface searches the surface's whole grid. For the next ray Newton's method
+//! The first ray of a scan line that meets a surface searches the surface's grid; a departure: only up to the closest point. For the next ray Newton's method
 //! starts at the previous (u, v); from the point it finds, a testing ray goes back toward the origin. If the testing ray
 //! meets only the patch that holds the point, and meets it once by eq. (1), the point is the closest. Otherwise Newton's
 //! method from the patches that it meets decides.
@@ -8,7 +8,8 @@
 //! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm". Where its text leaves a choice:
 //! - ours: a ray that misses a surface empties the surface's memory, so that the next one searches in full;
 //! - ours: patches are decided in the order in which the testing ray meets them, and no list is kept;
-//! - ours: from a listed patch Newton's method tries the entrance, as the paper says, then the parallelogram and the exit;
+//! - ours: from a listed patch Newton's method tries the entrance of the ray, then the parallelogram and the exit: the paper's
+//!   entrance of the testing ray is none where that begins inside;
 //! - ours: a point that no listed patch holds cannot be judged, and the surface is searched in full.
 
 use super::starts::{First, roots_of_patch};
@@ -21,6 +22,7 @@ use crate::patch::Patches;
 use crate::planes::DepthRange;
 use crate::point::Point;
 use crate::ray::{Hit, Interval, Ray};
+use crate::reading::{Ours, Reading};
 use crate::root::Root;
 use crate::scalar::Scalar;
 use crate::scene::Scene;
@@ -45,28 +47,47 @@ pub fn closest<P: Point, F: Fallback<P>>(
     scratch: &mut ScratchView<'_, P, F>,
     work: &mut Work,
 ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
+    closest_by(Ours, scene, patches, grids, memory, scan_line, ray, interval, limits, scratch, work)
+}
+
+/// [`closest`] by another reading of the paper.
+#[inline(always)]
+pub fn closest_by<P: Point, F: Fallback<P>>(
+    reading: impl Reading,
+    scene: &Scene<'_, P>,
+    patches: &Patches<'_, P::Scalar>,
+    grids: &Grids<'_, P::Scalar>,
+    memory: &mut [Remembered<P::Scalar>],
+    scan_line: u32,
+    ray: &Ray<P::Scalar>,
+    interval: &Interval<P::Scalar>,
+    limits: &Limits<P::Scalar>,
+    scratch: &mut ScratchView<'_, P, F>,
+    work: &mut Work,
+) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
     led(scan_line.wrapping_add(1), work, |stamp, recalled, work| {
-        scene.closest(ray, interval, limits, work, |surface, planes, range, work| {
+        scene.closest(reading, ray, interval, limits, work, |surface, planes, range, work| {
             let number = surface.number as usize;
             let grid = grids.of_surface(number).ok_or(Limit::Slot)?;
             let patches = patches.of_surface(number).ok_or(Limit::Slot)?;
             let slot = memory.get_mut(number).ok_or(Limit::Memory)?;
             let solver = Solver::new(surface, planes, limits, scratch.flat, &mut scratch.basis);
             let along = InGrid { grid, patches };
-            Search { solver, fallback: &mut scratch.fallback, along, range }.run(slot, stamp, recalled, work)
+            Search { reading, solver, fallback: &mut scratch.fallback, along, range }.run(slot, stamp, recalled, work)
         })
     })
 }
 
 /// One ray and one surface.
-struct Search<'a, 's, 'm, P: Point, F> {
+struct Search<'a, 's, 'm, P: Point, F, R> {
+    reading: R,
     solver: Solver<'a, 's, 'm, P>,
     fallback: &'a mut F,
     along: InGrid<'a, P::Scalar>,
     range: DepthRange<P::Scalar>,
 }
 
-impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
+impl<P: Point, F: Fallback<P>, R: Reading> Search<'_, '_, '_, P, F, R> {
     /// The closest point in the ray's interval, and what to remember of it.
     #[inline(always)]
     fn run(
@@ -76,7 +97,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         recalled: &mut bool,
         work: &mut Work,
     ) -> Result<Option<Root<P::Parameter>>, Limit> {
-        let previous = slot.recall(stamp);
+        let previous = slot.recall(stamp).filter(|_| self.reading.coherence());
         *recalled |= previous.is_some();
         let found = match self.resume(previous, work)? {
             Some(root) => Some(root),
@@ -102,7 +123,11 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         // A point before the interval says nothing about what lies in it.
         let point = self.solver.solve(start, work)?.filter(|root| !self.solver.planes.is_before_interval(root.depth));
         let verified = match point {
-            Some(point) => self.verify(point, work)?,
+            Some(point) if self.reading.verification() => self.verify(point, work)?,
+            Some(point) => {
+                work.intersection_points += u32::from(self.solver.planes.t_in_interval(point.depth).is_some());
+                Some(point)
+            }
             None => None,
         };
         work.start_failed += u32::from(verified.is_none());
@@ -114,7 +139,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
 
     /// The testing ray: the point itself if it is the closest, a closer one that it leads to, or `None` if it cannot tell.
     fn verify(&mut self, point: Root<P::Parameter>, work: &mut Work) -> Result<Option<Root<P::Parameter>>, Limit> {
-        let Search { solver, fallback, along, range } = self;
+        let Search { solver, fallback, along, range, .. } = self;
         let (planes, limits) = (solver.planes, solver.limits);
         let mut closest = Some(point);
         let (mut owners, mut alone) = (0_u32, true);
@@ -151,7 +176,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
         let (planes, limits) = (self.solver.planes, self.solver.limits);
         work.full_searches += 1;
         P::Scalar::tell(|| Event::FullSearch);
-        let Search { solver, fallback, along, range } = self;
+        let Search { reading, solver, fallback, along, range } = self;
         let mut best: Option<Root<P::Parameter>> = None;
         along.ahead(planes, range, limits, work, |patch, crossing, work| {
             if crossing.overlaps(range) {
@@ -160,7 +185,7 @@ impl<P: Point, F: Fallback<P>> Search<'_, '_, '_, P, F> {
                 })?;
             }
             // A root counts only once the walk has come to it: a patch not met yet may hold a closer one.
-            Ok(best.map_or(P::Scalar::INFINITY, |root| root.depth))
+            Ok(best.filter(|_| reading.early_end()).map_or(P::Scalar::INFINITY, |root| root.depth))
         })?;
         Ok(best)
     }

@@ -6,6 +6,7 @@ use super::*;
 use crate::parameter::{Number, Parameter};
 use crate::point::Plain;
 use crate::ray::Incidence;
+use crate::reading::Ours;
 use std::vec;
 use std::vec::Vec;
 
@@ -33,7 +34,7 @@ fn search(
     asked: &mut Vec<u32>,
 ) -> Result<Option<Hit<f64>>, GaveUp<f64>> {
     let ray = scene.ray([0.1, 0.2, -4.0], [0.0, 0.0, 2.0]).unwrap();
-    scene.closest(&ray, interval, limits, &mut Work::default(), |surface, planes, range, _| {
+    scene.closest(Ours, &ray, interval, limits, &mut Work::default(), |surface, planes, range, _| {
         asked.push(surface.number);
         let depth = planes.point(&surface.net.points()[0].0).depth;
         let inside = range.min <= depth && depth <= range.max;
@@ -110,9 +111,10 @@ fn bad_surfaces_are_named_and_an_empty_scene_is_missed() {
     with_sheets(&[], |scene| {
         assert!(scene.is_empty() && scene.surface(0).is_none());
         let ray = scene.ray([0.0, 0.0, -1.0], [0.0, 0.0, 1.0]).unwrap();
-        let found = scene.closest(&ray, &Interval::ahead(), &Limits::default(), &mut Work::default(), |_, _, _, _| {
-            panic!("there is nothing to search")
-        });
+        let found =
+            scene.closest(Ours, &ray, &Interval::ahead(), &Limits::default(), &mut Work::default(), |_, _, _, _| {
+                panic!("there is nothing to search")
+            });
         assert_eq!(found, Ok(None));
     });
 }

@@ -1,6 +1,7 @@
 use super::*;
 use crate::frame::Aabb;
 use crate::point::Plain;
+use crate::reading::{Ours, Switches};
 use crate::surface::{Net, Shape};
 
 fn measure(bend_u: f64, bend_v: f64, sides: [f64; 2]) -> Measure<f64> {
@@ -12,14 +13,23 @@ fn measure(bend_u: f64, bend_v: f64, sides: [f64; 2]) -> Measure<f64> {
 
 #[test]
 fn the_more_bent_direction_is_halved_and_the_longer_of_straight_ones() {
-    assert_eq!(direction_to_halve(&measure(2.0, 1.0, [1.0, 9.0]), [0, 0], 3), Some(true));
-    assert_eq!(direction_to_halve(&measure(1.0, 2.0, [9.0, 1.0]), [0, 0], 3), Some(false));
-    assert_eq!(direction_to_halve(&measure(0.0, 0.0, [1.0, 2.0]), [0, 0], 3), Some(false));
-    assert_eq!(direction_to_halve(&measure(0.0, 0.0, [2.0, 1.0]), [0, 0], 3), Some(true));
+    assert_eq!(direction_to_halve(Ours, &measure(2.0, 1.0, [1.0, 9.0]), [0, 0], 3), Some(true));
+    assert_eq!(direction_to_halve(Ours, &measure(1.0, 2.0, [9.0, 1.0]), [0, 0], 3), Some(false));
+    assert_eq!(direction_to_halve(Ours, &measure(0.0, 0.0, [1.0, 2.0]), [0, 0], 3), Some(false));
+    assert_eq!(direction_to_halve(Ours, &measure(0.0, 0.0, [2.0, 1.0]), [0, 0], 3), Some(true));
     // At its depth a direction leaves it to the other; at both there is nothing more to do.
-    assert_eq!(direction_to_halve(&measure(2.0, 1.0, [1.0; 2]), [3, 0], 3), Some(false));
-    assert_eq!(direction_to_halve(&measure(1.0, 2.0, [1.0; 2]), [0, 3], 3), Some(true));
-    assert_eq!(direction_to_halve(&measure(1.0, 2.0, [1.0; 2]), [3, 3], 3), None);
+    assert_eq!(direction_to_halve(Ours, &measure(2.0, 1.0, [1.0; 2]), [3, 0], 3), Some(false));
+    assert_eq!(direction_to_halve(Ours, &measure(1.0, 2.0, [1.0; 2]), [0, 3], 3), Some(true));
+    assert_eq!(direction_to_halve(Ours, &measure(1.0, 2.0, [1.0; 2]), [3, 3], 3), None);
+}
+
+/// Of two directions that are bent alike the shorter one turns more.
+#[test]
+fn without_the_bend_the_direction_that_turns_more_is_halved() {
+    let turning = Switches { bend_halving: false, ..Switches::ours() };
+    let more_bent = measure(2.0, 1.0, [9.0, 1.0]);
+    assert_eq!(direction_to_halve(Ours, &more_bent, [0, 0], 3), Some(true));
+    assert_eq!(direction_to_halve(turning, &more_bent, [0, 0], 3), Some(false));
 }
 
 /// A saddle has no bend in u nor in v, only twist: it is halved all the same.

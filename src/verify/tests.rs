@@ -9,6 +9,7 @@ use crate::measure::Measure;
 use crate::parameter::Number;
 use crate::point::Plain;
 use crate::ray::{Incidence, Interval};
+use crate::reading::Ours;
 use crate::surface::Net;
 use crate::sweep::InGrid;
 use std::vec::Vec;
@@ -112,7 +113,7 @@ fn a_point_is_the_closest_or_critical_or_hidden_by_a_neighbour_or_by_another() {
             turned: false,
         };
         let limits = Limits { critical_factor: factor, ..Limits::default() };
-        verdict(&InGrid { grid, patches }, &planes, &root, range.min, &limits, &mut Work::default()).unwrap()
+        verdict(Ours, &InGrid { grid, patches }, &planes, &root, range.min, &limits, &mut Work::default()).unwrap()
     };
     let owner = sheet(0.1, high);
     assert_eq!(ask(&[owner], 0.75, 1.0), Verdict::Closest);

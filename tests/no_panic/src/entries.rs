@@ -22,6 +22,7 @@ use patchray::pieces::{InKnots, Part, Piece, PieceError, PieceMemory, Pieces};
 use patchray::planes::{DepthRange, Planes, Projected, project_net};
 use patchray::point::Point;
 use patchray::ray::{Hit, Interval, Ray, RayError};
+use patchray::reading::Ours;
 use patchray::region::{Order, Region};
 use patchray::root::Root;
 use patchray::scalar::{Scalar, Vector3};
@@ -740,7 +741,7 @@ unsafe extern "C" fn verify<P: Point>(
         *owners = owners.wrapping_add(u32::from(listed.owner));
         Ok(*owners < limits.patches)
     });
-    out.1 = verdict(&along, planes, root, nearest, limits, work);
+    out.1 = verdict(Ours, &along, planes, root, nearest, limits, work);
 }
 
 /// An arena asked for anything.
