@@ -2,12 +2,13 @@
 pub mod bake;
 pub mod batch;
 pub mod channels;
+mod clock;
 pub mod cmd;
 pub mod drawing;
+pub mod experiment;
 pub mod explain;
 pub mod judge;
 pub mod lower;
-pub mod measure;
 pub mod memory;
 pub mod method;
 pub mod number;

@@ -7,9 +7,10 @@ use patchray::bernstein::MAX_DEGREE;
 use patchray::grid::{GridError, GridMemory, GridOptions, GridSlot, Grids};
 use patchray::patch::{Parallelepiped, Patch, Patches};
 use patchray::point::Point;
+use patchray::reading::Switches;
 use patchray::scalar::Scalar;
 use patchray::scene::{Scene, SceneError, SceneHeader, SceneMemory, SceneOptions, SurfaceSlot};
-use patchray::subdivide::{PatchMemory, SubdivideError, SubdivideScratch, Subdivision, TreeMemory, subdivide};
+use patchray::subdivide::{PatchMemory, SubdivideError, SubdivideScratch, Subdivision, TreeMemory, subdivide_by};
 use patchray::surface::Net;
 use patchray::tree::Tree;
 
@@ -86,6 +87,8 @@ impl Stages {
 pub struct Preparation<S> {
     /// How finely surfaces are subdivided.
     pub subdivision: Subdivision<S>,
+    /// By which reading of the paper.
+    pub switches: Switches,
     /// How fine the grids over patches are.
     pub grid: GridOptions<S>,
     /// How fine the grid over surfaces is.
@@ -102,6 +105,7 @@ impl<S: Scalar> Default for Preparation<S> {
     fn default() -> Self {
         Preparation {
             subdivision: Subdivision::default(),
+            switches: Switches::ours(),
             grid: GridOptions::default(),
             scene: SceneOptions::default(),
             own_origins: true,
@@ -151,7 +155,7 @@ impl<P: FromFile> Lowered<P> {
             return Err(LowerError::Vanishes { diagonal });
         }
         if stages.has_patches() {
-            lowered.subdivide(&preparation.subdivision, numbers, &mut slots)?;
+            lowered.subdivide(preparation, numbers, &mut slots)?;
         }
         if stages.grids {
             lowered.grids_of(&preparation.grid, &mut slots)?;
@@ -216,10 +220,11 @@ impl<P: FromFile> Lowered<P> {
 
     fn subdivide(
         &mut self,
-        options: &Subdivision<P::Scalar>,
+        preparation: &Preparation<P::Scalar>,
         number: impl Fn(u32) -> usize,
         slots: &mut Slots,
     ) -> Result<(), LowerError> {
+        let Preparation { subdivision: options, switches, .. } = preparation;
         let given = options.patches_per_surface;
         let refused = |error: SubdivideError| match error {
             SubdivideError::Patches { surface } => LowerError::Patches { number: number(surface), given },
@@ -230,11 +235,13 @@ impl<P: FromFile> Lowered<P> {
         let scene = Scene::new(self.header, &self.points, &self.surfaces, &self.offsets, &self.references);
         let tree = wants_tree.then_some(TreeMemory { nodes: &mut [], links: &mut [] });
         let nothing = PatchMemory { patches: &mut [], first: &mut [] };
-        let needs = match subdivide(scene.surfaces(), scene.frame(), options, &mut scratch.view(), nothing, tree) {
-            Ok(_) => Default::default(),
-            Err(SubdivideError::Memory(needs)) => needs,
-            Err(error) => return Err(refused(error)),
-        };
+        let needs =
+            match subdivide_by(*switches, scene.surfaces(), scene.frame(), options, &mut scratch.view(), nothing, tree)
+            {
+                Ok(_) => Default::default(),
+                Err(SubdivideError::Memory(needs)) => needs,
+                Err(error) => return Err(refused(error)),
+            };
         slots.ask::<Patch<P::Scalar>>(Kind::Patches, needs.patches);
         slots.ask::<u32>(Kind::PatchRanges, needs.first);
         slots.ask::<Parallelepiped<P::Scalar>>(Kind::TreeNodes, needs.nodes);
@@ -246,7 +253,8 @@ impl<P: FromFile> Lowered<P> {
         self.links = slots.take(Kind::TreeLinks, 0, needs.links)?;
         let memory = PatchMemory { patches: &mut self.patches, first: &mut self.first };
         let tree = wants_tree.then_some(TreeMemory { nodes: &mut self.nodes, links: &mut self.links });
-        subdivide(scene.surfaces(), scene.frame(), options, &mut scratch.view(), memory, tree).map_err(refused)?;
+        subdivide_by(*switches, scene.surfaces(), scene.frame(), options, &mut scratch.view(), memory, tree)
+            .map_err(refused)?;
         Ok(())
     }
 

@@ -13,6 +13,7 @@ use patchray::method::{
 use patchray::patch::Patches;
 use patchray::point::Point;
 use patchray::ray::{Hit, Interval, Ray};
+use patchray::reading::Switches;
 use patchray::scalar::Scalar;
 use patchray::scene::Scene;
 use patchray::tree::Tree;
@@ -68,6 +69,8 @@ pub struct Task<'t, S> {
     pub interval: &'t Interval<S>,
     /// The bounds on the work.
     pub limits: &'t Limits<S>,
+    /// By which reading of the paper; `None` for the one that serves users best.
+    pub switches: Option<Switches>,
 }
 
 /// What the rays before left to a coherent method.
@@ -208,11 +211,15 @@ impl<P: Point> Method<P> for Newton {
     fn answer(
         Views { scene, patches, tree, .. }: &Views<'_, P>,
         _: Coherence<'_, P::Scalar>,
-        Task { ray, interval, limits }: &Task<'_, P::Scalar>,
+        Task { ray, interval, limits, switches }: &Task<'_, P::Scalar>,
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Answer<Self::Hits> {
-        Ok(newton::closest(scene, patches, tree, ray, interval, limits, &mut newton_room(scratch), work)?)
+        let room = &mut newton_room(scratch);
+        Ok(match *switches {
+            None => newton::closest(scene, patches, tree, ray, interval, limits, room, work)?,
+            Some(some) => newton::closest_by(some, scene, patches, tree, ray, interval, limits, room, work)?,
+        })
     }
 }
 
@@ -220,7 +227,7 @@ impl<P: Point> Complete<P> for Newton {
     #[inline]
     fn all_hits(
         Views { scene, patches, tree, .. }: &Views<'_, P>,
-        Task { ray, interval, limits }: &Task<'_, P::Scalar>,
+        Task { ray, interval, limits, .. }: &Task<'_, P::Scalar>,
         scratch: &mut Self::Scratch,
         hits: &mut List<Hit<P::Scalar>, HITS>,
         work: &mut Work,
@@ -231,7 +238,7 @@ impl<P: Point> Complete<P> for Newton {
     #[inline]
     fn any_hit(
         Views { scene, patches, tree, .. }: &Views<'_, P>,
-        Task { ray, interval, limits }: &Task<'_, P::Scalar>,
+        Task { ray, interval, limits, .. }: &Task<'_, P::Scalar>,
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
@@ -248,12 +255,17 @@ impl<P: Point> Method<P> for NewtonCoherent {
     fn answer(
         Views { scene, patches, grids, .. }: &Views<'_, P>,
         Coherence { memory, line }: Coherence<'_, P::Scalar>,
-        Task { ray, interval, limits }: &Task<'_, P::Scalar>,
+        Task { ray, interval, limits, switches }: &Task<'_, P::Scalar>,
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Answer<Self::Hits> {
         let room = &mut newton_room(scratch);
-        Ok(newton_coherent::closest(scene, patches, grids, memory, line, ray, interval, limits, room, work)?)
+        Ok(match *switches {
+            None => newton_coherent::closest(scene, patches, grids, memory, line, ray, interval, limits, room, work)?,
+            Some(some) => newton_coherent::closest_by(
+                some, scene, patches, grids, memory, line, ray, interval, limits, room, work,
+            )?,
+        })
     }
 }
 
@@ -266,11 +278,15 @@ impl<P: Point> Method<P> for Clipping {
     fn answer(
         Views { scene, .. }: &Views<'_, P>,
         _: Coherence<'_, P::Scalar>,
-        Task { ray, interval, limits }: &Task<'_, P::Scalar>,
+        Task { ray, interval, limits, switches }: &Task<'_, P::Scalar>,
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Answer<Self::Hits> {
-        Ok(clipping::closest(scene, ray, interval, limits, &mut scratch.view(), work)?)
+        let room = &mut scratch.view();
+        Ok(match *switches {
+            None => clipping::closest(scene, ray, interval, limits, room, work)?,
+            Some(some) => clipping::closest_by(some, scene, ray, interval, limits, room, work)?,
+        })
     }
 }
 
@@ -278,7 +294,7 @@ impl<P: Point> Complete<P> for Clipping {
     #[inline]
     fn all_hits(
         Views { scene, .. }: &Views<'_, P>,
-        Task { ray, interval, limits }: &Task<'_, P::Scalar>,
+        Task { ray, interval, limits, .. }: &Task<'_, P::Scalar>,
         scratch: &mut Self::Scratch,
         hits: &mut List<Hit<P::Scalar>, HITS>,
         work: &mut Work,
@@ -289,7 +305,7 @@ impl<P: Point> Complete<P> for Clipping {
     #[inline]
     fn any_hit(
         Views { scene, .. }: &Views<'_, P>,
-        Task { ray, interval, limits }: &Task<'_, P::Scalar>,
+        Task { ray, interval, limits, .. }: &Task<'_, P::Scalar>,
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Result<Option<Hit<P::Scalar>>, GaveUp<P::Scalar>> {
@@ -306,12 +322,17 @@ impl<P: Point> Method<P> for ClippingCoherent {
     fn answer(
         Views { scene, patches, grids, .. }: &Views<'_, P>,
         Coherence { memory, line }: Coherence<'_, P::Scalar>,
-        Task { ray, interval, limits }: &Task<'_, P::Scalar>,
+        Task { ray, interval, limits, switches }: &Task<'_, P::Scalar>,
         scratch: &mut Self::Scratch,
         work: &mut Work,
     ) -> Answer<Self::Hits> {
         let room = &mut scratch.view();
-        Ok(clipping_coherent::closest(scene, patches, grids, memory, line, ray, interval, limits, room, work)?)
+        Ok(match *switches {
+            None => clipping_coherent::closest(scene, patches, grids, memory, line, ray, interval, limits, room, work)?,
+            Some(some) => clipping_coherent::closest_by(
+                some, scene, patches, grids, memory, line, ray, interval, limits, room, work,
+            )?,
+        })
     }
 }
 

@@ -65,7 +65,7 @@ where
     M: Method<P> + 'm,
     P: Point,
 {
-    Box::new(MethodTracer::<M, P>::new(views, settings.limits(), coherence))
+    Box::new(MethodTracer::<M, P>::new(views, settings.limits(), coherence).by(settings.without.reading()))
 }
 
 /// Which rays are traced beside those of a picture's scan lines.

@@ -6,16 +6,17 @@
 
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
-use std::time::Instant;
 
 use patchray::bernstein::Basis;
 use patchray::limits::{Limits, Work};
 use patchray::method::Remembered;
 use patchray::point::Point;
 use patchray::ray::{Hit, Incidence, Interval, RayError};
+use patchray::reading::Switches;
 use patchray::scalar::Scalar;
 use patchray::scene::Scene;
 
+use crate::clock::Clock;
 use crate::lower::{ORDER, Place};
 use crate::method::{Answer, Coherence, Hits, Method, Stopped, Task, Views};
 use crate::scene::camera::View;
@@ -103,7 +104,7 @@ pub struct Tally {
     pub gave_up: BTreeMap<&'static str, u64>,
     /// The kernel's counters, in the order of [`Work::NAMES`].
     pub work: [u64; Work::COUNT],
-    /// Seconds for making rays and answering them, summed over threads. Measured around whole lines; the
+    /// Processor seconds for making rays and answering them, summed over threads. Measured around whole lines; the
     /// conversion of numbers and the normals are outside.
     pub seconds: f64,
     /// What each ray took, in order: only if there is a list for it when rays are traced.
@@ -218,6 +219,7 @@ pub struct MethodTracer<'m, M, P: Point> {
     limits: Limits<P::Scalar>,
     /// Whether rays leave something to the next.
     coherence: bool,
+    switches: Option<Switches>,
     method: PhantomData<M>,
 }
 
@@ -225,7 +227,12 @@ impl<'m, M: Method<P>, P: Point> MethodTracer<'m, M, P> {
     /// The tracer of the method `M`, such as [`Newton`](crate::method::Newton), over `views` and under `limits`. Without
     /// `coherence` a coherent method begins anew with every ray: what it then gains is owed to its order of search alone.
     pub fn new(views: Views<'m, P>, limits: Limits<P::Scalar>, coherence: bool) -> Self {
-        MethodTracer { views, limits, coherence, method: PhantomData }
+        MethodTracer { views, limits, coherence, switches: None, method: PhantomData }
+    }
+
+    /// The same by another reading of the paper.
+    pub fn by(self, switches: Option<Switches>) -> Self {
+        MethodTracer { switches, ..self }
     }
 
     /// Slots of coherence memory that a lane needs.
@@ -357,9 +364,9 @@ impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
     /// Traces what is ready, into `found`; this is what is timed.
     fn trace_ready(&mut self, tally: &mut Tally) {
         self.found.clear();
-        let MethodTracer { views, limits, coherence, .. } = self.tracer;
+        let MethodTracer { views, limits, coherence, switches, .. } = self.tracer;
         let of_nets = &views.at(Place::Nets);
-        let begin = Instant::now();
+        let clock = Clock::start();
         let mut counting = Counting::new(tally);
         self.found.extend(self.ready.iter().map(|ready| {
             if !coherence {
@@ -370,11 +377,12 @@ impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
                 let views = if *place == Place::File { views } else { of_nets };
                 let ray = &views.scene.ray(*origin, *direction)?;
                 let coherence = Coherence { memory: &mut self.memory, line: self.line };
-                Ok(M::answer(views, coherence, &Task { ray, interval, limits }, &mut self.scratch, work))
+                let task = &Task { ray, interval, limits, switches: *switches };
+                Ok(M::answer(views, coherence, task, &mut self.scratch, work))
             })
         }));
         counting.end();
-        tally.seconds += begin.elapsed().as_secs_f64();
+        tally.seconds += clock.seconds();
     }
 }
 

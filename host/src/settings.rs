@@ -8,6 +8,7 @@ use patchray::scalar::Scalar;
 use serde::Serialize;
 
 use self::bounds::{Bounds, Name, all_names, bound, in_range, named_limit};
+use self::switches::{On, Switch};
 use crate::lower::Preparation;
 use crate::scene::appearance::MAX_SIDE;
 use crate::scene::error::{InputError, OnInvalid};
@@ -15,6 +16,7 @@ use crate::scene::source::SourceText;
 use crate::scene::trace::{Acceptance, MAX_THREADS, Method, Precision, TraceSettings};
 
 pub mod bounds;
+pub mod switches;
 
 /// The flags that every verb takes, with the same meaning.
 #[derive(Args, Clone, Debug, Default)]
@@ -39,6 +41,15 @@ pub struct Flags {
     /// The share of an interval that a clip has to remove, else the interval is bisected [default: 0.2]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true, help_heading = "Tracing")]
     pub clip_threshold: Option<f64>,
+    /// The factor of eq. (1): smaller takes more rays for nearly tangential [default: 1]
+    #[arg(long, value_name = "NUMBER", value_parser = positive, allow_hyphen_values = true, help_heading = "Tracing")]
+    pub critical_factor: Option<f64>,
+    /// Follow the paper's text to the letter: without any departure from it
+    #[arg(long, help_heading = "Tracing")]
+    pub by_the_letter: bool,
+    /// A part of the paper's methods to do without
+    #[arg(long, value_enum, value_name = "PART", help_heading = "Tracing")]
+    pub without: Vec<Switch>,
     /// How far from the ray a root may lie, as a share of its surface's size [default: 2e-15 in f64, 1e-6 in f32]
     #[arg(long, value_name = "SHARE", value_parser = positive, allow_hyphen_values = true, help_heading = "Tracing")]
     pub tolerance: Option<f64>,
@@ -123,6 +134,10 @@ pub struct Settings {
     pub newton_starts: u32,
     /// The share of an interval that a clip has to remove, else the interval is bisected.
     pub clip_threshold: f64,
+    /// The factor of eq. (1).
+    pub critical_factor: f64,
+    /// The parts of the paper's methods that are there; in STATS those that are not.
+    pub without: On,
     /// How far from the ray a root may lie, as a share of its surface's size; `None` for the precision's default.
     pub tolerance: Option<f64>,
     /// How far a patch may be from flat, as a share of the scene's diagonal.
@@ -148,6 +163,8 @@ impl Default for Settings {
             newton_iterations: limits.newton_iterations,
             newton_starts: limits.newton_starts,
             clip_threshold: limits.clip_threshold,
+            critical_factor: limits.critical_factor,
+            without: On::ALL,
             tolerance: None,
             flatness: preparation.subdivision.flatness,
             grid_density: preparation.grid.density,
@@ -196,6 +213,8 @@ impl Settings {
         set(&mut self.newton_iterations, flags.newton_iterations);
         set(&mut self.newton_starts, flags.newton_starts);
         set(&mut self.clip_threshold, flags.clip_threshold);
+        set(&mut self.critical_factor, flags.critical_factor);
+        self.without = if flags.by_the_letter { On::LETTER } else { On::ALL }.without(&flags.without);
         self.tolerance = flags.tolerance.or(self.tolerance);
         set(&mut self.flatness, flags.flatness);
         set(&mut self.grid_density, flags.grid_density);
@@ -223,6 +242,7 @@ impl Settings {
             spans: self.limits.spans,
             newton_steps: self.limits.newton_steps,
             clip_threshold: S::from_f64(self.clip_threshold),
+            critical_factor: S::from_f64(self.critical_factor),
             clip_steps: self.limits.clip_steps,
             bisections: self.limits.bisections,
             pending_domains: self.limits.pending_domains,
@@ -236,6 +256,7 @@ impl Settings {
         preparation.subdivision.flatness = S::from_f64(self.flatness);
         preparation.subdivision.depth = self.limits.depth;
         preparation.subdivision.patches_per_surface = self.limits.patches_per_surface;
+        preparation.switches = self.without.0;
         preparation.grid.density = S::from_f64(self.grid_density);
         preparation.own_origins = !self.method.needs_view();
         preparation.arena_bytes = self.limits.arena_bytes.unwrap_or(u64::MAX);

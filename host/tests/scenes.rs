@@ -1,31 +1,17 @@
 //! The paper's four scenes: what `fixtures/scenes` holds of them, and how near it comes to the figures of its Table 1.
 
+use patchray_host::experiment::subject::{Family, letter};
+use patchray_host::experiment::{Experiment, Rays};
 use patchray_host::judge::{Agreement, Truth};
 use patchray_host::scanline::{Outcome, Tally, rays_of};
 use patchray_host::scene::camera::View;
 use patchray_host::scene::error::OnInvalid;
 use patchray_host::scene::file::{self, Scene};
+use patchray_host::scene::paper::{Figures, SCENES};
 use patchray_host::scene::trace::{Acceptance, Method, Precision};
 use patchray_host::settings::{Flags, Settings};
 use patchray_host::viewed::{Viewed, Wishes};
 use std::path::Path;
-
-/// A scene of the paper: its file's name, and its row of Table 1 as far as it is about the original algorithm.
-struct Row {
-    name: &'static str,
-    surfaces: u64,
-    patches: u64,
-    /// None where the scene does not come near them: surfaces that lie close behind one another are searched in the order of the
-    /// scene's grid, and more of them before the closest is known.
-    intersection_points: Option<u64>,
-}
-
-const TABLE_1: [Row; 4] = [
-    Row { name: "teapot", surfaces: 32, patches: 7_594, intersection_points: Some(110_169) },
-    Row { name: "toruses", surfaces: 40, patches: 13_872, intersection_points: None },
-    Row { name: "rings", surfaces: 288, patches: 39_042, intersection_points: None },
-    Row { name: "mirrors", surfaces: 340, patches: 39_358, intersection_points: Some(470_133) },
-];
 
 fn scene(name: &str) -> Scene {
     let path = format!("{}/../fixtures/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -56,7 +42,8 @@ fn assert_near(what: &str, found: u64, paper: u64) {
 
 #[test]
 fn surfaces_and_patches_are_the_papers() {
-    for Row { name, surfaces, patches, .. } in TABLE_1 {
+    for paper in SCENES {
+        let (name, Figures { surfaces, patches, .. }) = (paper.name(), paper.figures);
         let scene = scene(name);
         assert_eq!(scene.model.surfaces.len() as u64, surfaces, "{name}");
         // The tables' scenes are polynomial, and bicubic throughout.
@@ -68,20 +55,20 @@ fn surfaces_and_patches_are_the_papers() {
     }
 }
 
+/// But for the fourth, whose backdrop fills the picture with columns, of which a ray meets front and back.
 #[test]
-fn intersection_points_are_the_papers() {
-    for Row { name, intersection_points, .. } in TABLE_1 {
-        let Some(intersection_points) = intersection_points else { continue };
-        let scene = scene(name);
-        let mut viewed = viewed(&scene);
-        let (tracer, _) = viewed.tracer().expect("there is memory");
-        let (mut lane, mut tally, picture) = (tracer.lane(), Tally::default(), picture(&scene));
-        for line in 0..picture.scan_lines() {
-            let samples = picture.scan_line(line);
-            lane.trace_line(&samples, &rays_of(&picture, line, &samples), &mut Vec::new(), &mut tally);
-        }
-        assert_eq!((tally.rays, tally.gave_up_in_all()), (512 * 512, 0), "{name}");
-        assert_near(name, tally.count("intersection_points"), intersection_points);
+fn intersection_points_of_three_scenes_are_the_papers() {
+    let [original, ..] = letter(Family::Numerical);
+    for paper in &SCENES[..3] {
+        let Scene { model, description, source, .. } = paper.load().expect("it is valid");
+        let picture = paper.camera(&description.camera).view([512, 512]);
+        let flags = Flags { acceptance: Some(Acceptance::Paper), ..Flags::default() };
+        let settings = Settings::of_scene(&flags, &description.trace, &source).expect("it is valid");
+        let experiment = Experiment { model: &model, settings, step: &|| {} };
+        let runs = experiment.measure(&[(original.clone(), Rays::Picture(&picture))], 0, None);
+        let run = &runs.expect("there is memory")[0];
+        assert_eq!((run.rays, run.gave_up), (512 * 512, 0), "{}", paper.name());
+        assert_near(paper.name(), run.counts.of("intersection_points"), paper.figures.numerical.points[0]);
     }
 }
 
@@ -114,7 +101,7 @@ fn answers(scene: &Scene, settings: &Settings) -> Vec<Option<f64>> {
 #[test]
 fn what_is_proved_is_right_at_any_number_of_patches() {
     let mut lost = 0;
-    for Row { name, .. } in TABLE_1 {
+    for name in SCENES.map(|paper| paper.name()) {
         let scene = scene(name);
         let fine = Settings::of_scene(&Flags::default(), &scene.description.trace, &scene.source).expect("it is valid");
         assert_eq!(fine.acceptance, Acceptance::Proved);
@@ -158,7 +145,7 @@ fn wrong_in_f32(scene: &Scene, method: Method, truths: &[Truth], picture: &View)
 /// original, which traces ray by ray.
 #[test]
 fn predicted_methods_are_wrong_of_few_rays_in_f32() {
-    for Row { name, .. } in TABLE_1 {
+    for name in SCENES.map(|paper| paper.name()) {
         let scene = scene(name);
         let picture = picture(&scene);
         let fine = Settings::of_scene(&Flags::default(), &scene.description.trace, &scene.source).expect("it is valid");

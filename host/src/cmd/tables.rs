@@ -1,20 +1,30 @@
-//! `patchray tables`: the paper's tables, measured, with the paper's figures beside ours.
+//! `patchray tables`: the paper's experiment, measured, with the paper's figures beside ours.
 
 use std::io::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
 use clap::Args;
+use rayon::prelude::*;
 
 use super::outputs::{Outputs, StatsOutputs};
 use super::{Failure, pool, progress};
-use crate::judge;
-use crate::measure::{Primary, Scene, passes};
+use crate::experiment::rays::{cameras, lines, shadows, shuffled};
+use crate::experiment::subject::{Family, Subject, changes, ladder, letter};
+use crate::experiment::{Experiment, Rays, cost};
+use crate::judge::{self, OracleStats, Truth};
+use crate::lower::{LowerError, Stages};
 use crate::oracle::Oracle;
 use crate::output::Output;
+use crate::prepared::Prepared;
 use crate::report::table::Style;
-use crate::report::tables::{Report, SceneReport};
+use crate::report::tables::{
+    CameraReport, ChangeReport, FamilyReport, IncoherentReport, Preparation, Report, SamplingReport, SceneReport,
+};
+use crate::scene::camera::{Camera, View};
+use crate::scene::file::Scene;
 use crate::scene::paper::{PaperScene, SCENES};
+use crate::scene::sampling::Sampling;
 use crate::scene::trace::Acceptance;
 use crate::settings::{Flags, Settings, SizeFlag};
 use crate::stats::SCHEMA;
@@ -22,17 +32,17 @@ use crate::stats::SCHEMA;
 /// The command line of `tables`.
 #[derive(Args, Clone, Debug)]
 pub struct TablesArgs {
-    /// The size of the pictures.
+    /// The size of the pictures of Tables 1 and 2; those of the others are half as wide and high
     #[command(flatten)]
     pub size: SizeFlag,
-    /// How often each method traces each scene for Tables 1 and 2, at least 1; for Tables 3 and 4 half as often
+    /// How often each method traces each scene for Tables 1 and 2, at least 1; for the others half as often
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000),
         help_heading = "Tracing")]
     pub repetitions: u32,
     /// Leave out the oracle, and with it what pixels are wrong; saves a part of the time
     #[arg(long, help_heading = "Tracing")]
     pub skip_oracle: bool,
-    /// Print the tables as Markdown
+    /// Print a document in Markdown that can be read by itself
     #[arg(long, help_heading = "Output")]
     pub markdown: bool,
     /// The common flags.
@@ -43,16 +53,17 @@ pub struct TablesArgs {
 /// The size at which the paper measures.
 const SIZE: [u32; 2] = [512, 512];
 
-/// Measures the tables on the paper's four scenes, and prints them.
+/// Measures the paper's four scenes, and prints tables.
 ///
 /// # Errors
 /// Flags that do not go together, too little memory, or an output that cannot be written.
 pub fn run(args: &TablesArgs) -> Result<(), Failure> {
     let TablesArgs { size, repetitions, skip_oracle, markdown, flags } = args;
-    if flags.method.is_some() {
+    if flags.method.is_some() || flags.by_the_letter || !flags.without.is_empty() {
         return Err(Failure::Usage {
-            message: "`tables` compares all methods".to_owned(),
-            help: "leave --method out; `render` traces a scene with one method".to_owned(),
+            message: "`tables` compares all methods, with and without their parts".to_owned(),
+            help: "leave --method, --by-the-letter and --without out; `render` traces a scene with one method"
+                .to_owned(),
         });
     }
     let stdout = Path::new("-");
@@ -63,21 +74,37 @@ pub fn run(args: &TablesArgs) -> Result<(), Failure> {
 
     let begin = Instant::now();
     let size = size.size.unwrap_or(SIZE);
+    let small = size.map(|side| side.div_ceil(2));
+    let fewer = repetitions.div_ceil(2);
     let mut scenes = Vec::new();
-    let mut common = Settings::of_flags(flags);
     for paper in &SCENES {
-        let (report, settings) = measure(paper, size, *repetitions, *skip_oracle, flags)?;
-        common = settings;
-        scenes.push(report);
+        scenes.push(OnePaperScene::load(paper, [size, small], flags)?);
     }
+    let common = scenes.first().map_or_else(|| Settings::of_flags(flags), |scene| scene.settings);
+    let threads = common.threads.min(SCENES.len() as u32);
+    if !skip_oracle {
+        let rows = scenes.iter().flat_map(|scene| scene.pictures).map(|picture| u64::from(picture.scan_lines())).sum();
+        let bar = progress(rows, "asking the oracle", flags.quiet);
+        pool(common.threads)?.install(|| scenes.iter_mut().for_each(|scene| scene.ask(|| bar.inc(1))));
+        bar.finish_and_clear();
+    }
+    let passes = SCENES.len() as u64 * passes(*repetitions, fewer);
+    let bar = progress(passes, "measuring", flags.quiet);
+    let step = || bar.inc(1);
+    let measured: Result<Vec<_>, LowerError> = pool(threads)?
+        .install(|| scenes.par_iter().with_max_len(1).map(|scene| scene.measure(*repetitions, fewer, &step)).collect());
+    let scenes = measured?;
+    bar.finish_and_clear();
     let report = Report {
         schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
         size,
+        small,
         precision: common.precision,
         acceptance: common.acceptance,
         repetitions: *repetitions,
-        oracle_threads: common.threads,
+        fewer,
+        threads,
         seconds: begin.elapsed().as_secs_f64(),
         scenes,
     };
@@ -90,54 +117,154 @@ pub fn run(args: &TablesArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// All tables of one scene.
-fn measure(
-    paper: &PaperScene,
-    size: [u32; 2],
-    repetitions: u32,
-    skip_oracle: bool,
-    flags: &Flags,
-) -> Result<(SceneReport, Settings), Failure> {
-    let scene = paper.load()?;
-    let settings = Settings {
-        // What the paper measured; proofs and their fallback would be measured too.
-        acceptance: flags.acceptance.unwrap_or(Acceptance::Paper),
-        ..Settings::of_scene(flags, &scene.description.trace, &scene.source)?
+/// How often a method's pass ends on one scene.
+fn passes(repetitions: u32, fewer: u32) -> u64 {
+    let of = |family: Family| {
+        let few = 4 * 2 + 2 * 2 + 2 * 2 + ladder(family).len() + 2 + 2 * changes(family).len();
+        letter(family).len() as u64 * u64::from(1 + repetitions) + few as u64 * u64::from(1 + fewer)
     };
-    let picture = scene.description.camera.view(size);
-    let asked = if skip_oracle {
-        None
-    } else {
-        let bar = progress(u64::from(picture.scan_lines()), "asking the oracle", flags.quiet);
-        let oracle = Oracle::new(&scene.model);
-        let asked = pool(settings.threads)?.install(|| judge::ask(&oracle, &picture, || bar.inc(1)));
-        bar.finish_and_clear();
-        Some(asked)
-    };
-    let bar = progress(passes(repetitions), "measuring", flags.quiet);
-    let subject = Scene {
-        model: &scene.model,
-        appearance: &scene.appearance,
-        picture,
-        settings,
-        repetitions,
-        step: &|| bar.inc(1),
-    };
-    let Primary { runs: [numerical, clipping], outcomes, size: [surfaces, patches] } =
-        subject.primary(asked.as_ref().map(|(truths, _)| truths.as_slice()))?;
-    let sampling = subject.samplings()?;
-    let rays = subject.one_by_one(&outcomes)?;
-    bar.finish_and_clear();
-    let report = SceneReport {
-        name: paper.name(),
-        paper: paper.figures,
-        surfaces,
-        patches,
-        oracle: asked.map(|(_, stats)| stats),
-        numerical,
-        clipping,
-        sampling,
-        rays,
-    };
-    Ok((report, settings))
+    Family::ALL.into_iter().map(of).sum()
+}
+
+/// These subjects, each on these rays.
+fn on<'r>(subjects: &[Subject], rays: Rays<'r>) -> Vec<(Subject, Rays<'r>)> {
+    subjects.iter().map(|subject| (subject.clone(), rays)).collect()
+}
+
+/// A scene of the paper, ready to be measured.
+struct OnePaperScene<'p> {
+    paper: &'p PaperScene,
+    scene: Scene,
+    settings: Settings,
+    camera: Camera,
+    /// Of Tables 1 and 2, and of the others.
+    pictures: [View; 2],
+    /// What the oracle says of them, if it was asked.
+    truths: Option<[(Vec<Truth>, OracleStats); 2]>,
+}
+
+impl<'p> OnePaperScene<'p> {
+    fn load(paper: &'p PaperScene, sizes: [[u32; 2]; 2], flags: &Flags) -> Result<Self, Failure> {
+        let scene = paper.load()?;
+        let settings = Settings {
+            // What the paper measured; proofs and their fallback would be measured too.
+            acceptance: flags.acceptance.unwrap_or(Acceptance::Paper),
+            ..Settings::of_scene(flags, &scene.description.trace, &scene.source)?
+        };
+        let camera = paper.camera(&scene.description.camera);
+        let pictures = sizes.map(|size| camera.view(size));
+        Ok(OnePaperScene { paper, scene, settings, camera, pictures, truths: None })
+    }
+
+    fn ask(&mut self, step: impl Fn() + Sync) {
+        let oracle = Oracle::new(&self.scene.model);
+        self.truths = Some(self.pictures.map(|picture| judge::ask(&oracle, &picture, &step)));
+    }
+
+    /// Everything that is measured on the scene.
+    fn measure(&self, repetitions: u32, fewer: u32, step: &(dyn Fn() + Sync)) -> Result<SceneReport, LowerError> {
+        let OnePaperScene { paper, scene, settings, truths, .. } = self;
+        let experiment = Experiment { model: &scene.model, settings: *settings, step };
+        let prepared = Prepared::build(&scene.model, Stages::PATCHES, settings)?;
+        let (surfaces, patches) = (prepared.surfaces(), prepared.patches());
+        drop(prepared);
+        let seconds = |stages: Stages| {
+            let begin = Instant::now();
+            Prepared::build(&scene.model, stages, settings).map(|_| begin.elapsed().as_secs_f64())
+        };
+        let preparation = Preparation {
+            surfaces: seconds(Stages::NONE)?,
+            trees: seconds(Stages { tree: true, ..Stages::PATCHES })?,
+            grids: seconds(Stages { grids: true, ..Stages::PATCHES })?,
+        };
+        Ok(SceneReport {
+            name: paper.name(),
+            paper: paper.figures,
+            surfaces,
+            patches,
+            preparation,
+            oracle: truths.as_ref().map(|[(_, stats), _]| stats.clone()),
+            numerical: self.family(&experiment, Family::Numerical, repetitions, fewer)?,
+            clipping: self.family(&experiment, Family::Clipping, repetitions, fewer)?,
+        })
+    }
+
+    fn family(
+        &self,
+        experiment: &Experiment<'_>,
+        family: Family,
+        repetitions: u32,
+        fewer: u32,
+    ) -> Result<FamilyReport, LowerError> {
+        let [large, small] = &self.pictures;
+        let truths = |k: usize| self.truths.as_ref().and_then(|both| both.get(k)).map(|(truths, _)| truths.as_slice());
+        let of_letter = letter(family);
+        let pair = &of_letter[..2];
+
+        let of_letter = experiment.measure(&on(&of_letter, Rays::Picture(large)), repetitions, truths(0))?;
+
+        let mut of_cameras = Vec::new();
+        for (name, camera) in cameras(&self.camera).into_iter().skip(1) {
+            let picture = camera.view(small.size);
+            of_cameras.push(CameraReport {
+                name,
+                runs: experiment.measure(&on(pair, Rays::Picture(&picture)), fewer, None)?,
+            });
+        }
+
+        let sampled = [Sampling::Uniform, Sampling::Jittered].map(|sampling| small.sampled(sampling));
+        let tasks: Vec<_> = pair
+            .iter()
+            .flat_map(|subject| sampled.iter().map(|picture| (subject.clone(), Rays::Picture(picture))))
+            .collect();
+        let mut samplings = Vec::new();
+        let mut runs = experiment.measure(&tasks, fewer, None)?.into_iter();
+        while let (Some(uniform), Some(jittered)) = (runs.next(), runs.next()) {
+            samplings.push(SamplingReport { uniform, jittered });
+        }
+
+        let of_picture = lines(small);
+        let hits = experiment.outcomes(&pair[0], small)?;
+        let light = self.scene.appearance.lights.first().and_then(|light| light.position).unwrap_or(small.eye);
+        let mut incoherent = Vec::new();
+        for (rays, lines) in
+            [("primary, shuffled", shuffled(&of_picture)), ("shadow", shadows(&of_picture, &hits, light))]
+        {
+            incoherent.push(IncoherentReport {
+                rays,
+                runs: experiment.measure(&on(pair, Rays::Lines(&lines)), fewer, None)?,
+            });
+        }
+
+        let of_ladder = experiment.measure(&on(&ladder(family), Rays::Picture(small)), fewer, truths(1))?;
+
+        let mut all = on(pair, Rays::Picture(small));
+        let changed = changes(family);
+        all.extend(changed.iter().flat_map(|change| on(&change.subjects, Rays::Picture(small))));
+        let runs = experiment.measure(&all, fewer, truths(1))?;
+        let (before, after) = runs.split_at(pair.len());
+        let of_changes = changed.iter().zip(after.chunks(pair.len())).map(|(change, after)| ChangeReport {
+            name: change.name,
+            before: before.to_vec(),
+            after: after.to_vec(),
+        });
+
+        let paper = match family {
+            Family::Numerical => &self.paper.figures.numerical,
+            Family::Clipping => &self.paper.figures.clipping,
+        };
+        let cost = match of_letter.as_slice() {
+            [original, improved, ..] => cost::Model::of(original, improved, paper.gain),
+            _ => return Err(LowerError::Internal("the original and the improved method are measured".to_owned())),
+        };
+        Ok(FamilyReport {
+            letter: of_letter,
+            cameras: of_cameras,
+            samplings,
+            incoherent,
+            ladder: of_ladder,
+            changes: of_changes.collect(),
+            cost,
+        })
+    }
 }

@@ -1,7 +1,6 @@
 //! Drives the rays of a picture along its scan lines by what they share: the kernel's views.
 
 use std::marker::PhantomData;
-use std::time::Instant;
 
 use patchray::arena::Need;
 use patchray::bernstein::Basis;
@@ -16,6 +15,7 @@ use patchray::span::Span;
 use patchray::view::View;
 
 use super::{BLOCK, Found, Lane, LaneBytes, Outcome, Tally, Traced, Tracer, outcome};
+use crate::clock::Clock;
 use crate::lower::ORDER;
 use crate::method::in_view::ViewMethod;
 use crate::scene::camera;
@@ -162,9 +162,9 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
         let ViewLane { tracer, scratch, basis, slots, spans, active, buckets, ready, found, .. } = self;
         let ViewTracer { view, limits, scene, .. } = tracer;
         tally.rays += rays.len() as u64;
-        let begin = Instant::now();
+        let clock = Clock::start();
         let of_line = tracer.line(line, LineMemory { spans, active, buckets });
-        tally.seconds += begin.elapsed().as_secs_f64();
+        tally.seconds += clock.seconds();
         let mut of_line = of_line.ok();
         // At the beginning of a line no surface was the last one.
         let mut memory = Following { slots, last: u32::MAX };
@@ -173,7 +173,7 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
             ready.clear();
             ready.extend(block.iter().map(|sample| sample.map(P::Scalar::from_f64)));
             found.clear();
-            let begin = Instant::now();
+            let clock = Clock::start();
             // Of a view the kernel goes on counting from ray to ray.
             let mut work = Work::default();
             let mut each = tally.each.as_mut();
@@ -191,7 +191,7 @@ impl<M: ViewMethod<P>, P: Point> Lane for ViewLane<'_, M, P> {
                     Some(answer)
                 }));
             }
-            tally.seconds += begin.elapsed().as_secs_f64();
+            tally.seconds += clock.seconds();
             for (sum, count) in tally.work.iter_mut().zip(work.counts()) {
                 *sum += u64::from(count);
             }

@@ -78,6 +78,30 @@ impl Camera {
             }
         }
     }
+
+    /// The same camera, its eye turned about the point that it looks at: by so many degrees to the right about `up`, and by so many
+    /// upward. A camera by vectors is turned about the end of `forward`.
+    pub fn turned(&self, right: f64, upward: f64) -> Self {
+        let view = self.view([1, 1]);
+        let up = match *self {
+            Self::Vectors { up, .. } | Self::LookAt { up, .. } => up,
+        };
+        let turn = |vector: [f64; 3]| {
+            let level = about(unit(up), right.to_radians(), vector);
+            about(about(unit(up), right.to_radians(), unit(view.right)), -upward.to_radians(), level)
+        };
+        match *self {
+            Self::Vectors { eye, forward, right, up } => {
+                let turned = turn(forward);
+                let eye = [0, 1, 2].map(|k| eye[k] + forward[k] - turned[k]);
+                Self::Vectors { eye, forward: turned, right: turn(right), up: turn(up) }
+            }
+            Self::LookAt { eye, look_at, up, fov } => {
+                let back = turn([0, 1, 2].map(|k| eye[k] - look_at[k]));
+                Self::LookAt { eye: [0, 1, 2].map(|k| look_at[k] + back[k]), look_at, up, fov }
+            }
+        }
+    }
 }
 
 impl View {
@@ -218,6 +242,13 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// The vector turned about a unit axis (Rodrigues).
+fn about(axis: [f64; 3], angle: f64, vector: [f64; 3]) -> [f64; 3] {
+    let (sin, cos) = angle.sin_cos();
+    let (across, along) = (cross(axis, vector), dot(axis, vector) * (1.0 - cos));
+    [0, 1, 2].map(|k| vector[k] * cos + across[k] * sin + axis[k] * along)
+}
+
 /// The vector divided by its length; NaN for a zero vector.
 fn unit(vector: [f64; 3]) -> [f64; 3] {
     let length = length(vector);
@@ -241,6 +272,30 @@ mod tests {
                 assert!((corner[axis] - expected[axis]).abs() < 1e-14, "{corner:?} {expected:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_turned_camera_looks_at_the_same_point_from_as_far() {
+        let camera = Camera::LookAt { eye: [0.0, -5.0, 1.0], look_at: [0.0, 0.0, 1.0], up: [0.0, 0.0, 1.0], fov: 40.0 };
+        let eye = |right, upward| camera.turned(right, upward).view([1, 1]).eye;
+        let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-12);
+        assert!(near(eye(0.0, 0.0), [0.0, -5.0, 1.0]));
+        assert!(near(eye(90.0, 0.0), [5.0, 0.0, 1.0]), "to the right: {:?}", eye(90.0, 0.0));
+        let (sin, cos) = 30f64.to_radians().sin_cos();
+        assert!(near(eye(0.0, 30.0), [0.0, -5.0 * cos, 1.0 + 5.0 * sin]), "upward: {:?}", eye(0.0, 30.0));
+        assert!(near(eye(90.0, 30.0), [5.0 * cos, 0.0, 1.0 + 5.0 * sin]));
+        let by_vectors = Camera::Vectors {
+            eye: [0.0, -5.0, 1.0],
+            forward: [0.0, 5.0, 0.0],
+            right: [1.0, 0.0, 0.0],
+            up: [0.0, 0.0, 1.0],
+        };
+        let turned = by_vectors.turned(90.0, 0.0).view([1, 1]);
+        assert!(
+            near(turned.eye, [5.0, 0.0, 1.0])
+                && near(turned.forward, [-5.0, 0.0, 0.0])
+                && near(turned.right, [0.0, 1.0, 0.0])
+        );
     }
 
     #[test]

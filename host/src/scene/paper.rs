@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::bpt;
+use super::camera::Camera;
 use super::error::{InputError, OnInvalid};
 use super::file::{self, Scene};
 use super::source::SourceText;
@@ -52,13 +53,21 @@ pub struct PaperScene {
     /// The name of its file, without the folder.
     pub file: &'static str,
     text: &'static str,
+    /// The angle across the picture's width in degrees with which it is measured: so that the numerical original to the letter finds
+    /// the paper's intersection points. `None` where that of the picture stands.
+    field: Option<f64>,
     /// What the paper says of it.
     pub figures: Figures,
 }
 
 macro_rules! scene {
-    ($file:literal, $figures:expr) => {
-        PaperScene { file: $file, text: include_str!(concat!("../../../fixtures/scenes/", $file)), figures: $figures }
+    ($file:literal, $field:expr, $figures:expr) => {
+        PaperScene {
+            file: $file,
+            text: include_str!(concat!("../../../fixtures/scenes/", $file)),
+            field: $field,
+            figures: $figures,
+        }
     };
 }
 
@@ -66,6 +75,7 @@ macro_rules! scene {
 pub const SCENES: [PaperScene; 4] = [
     scene!(
         "teapot.toml",
+        Some(37.8),
         Figures {
             figure: 8,
             patches: 7594,
@@ -77,6 +87,7 @@ pub const SCENES: [PaperScene; 4] = [
     ),
     scene!(
         "toruses.toml",
+        Some(11.78),
         Figures {
             figure: 9,
             patches: 13872,
@@ -88,6 +99,7 @@ pub const SCENES: [PaperScene; 4] = [
     ),
     scene!(
         "rings.toml",
+        Some(40.05),
         Figures {
             figure: 10,
             patches: 39042,
@@ -99,6 +111,7 @@ pub const SCENES: [PaperScene; 4] = [
     ),
     scene!(
         "mirrors.toml",
+        None,
         Figures {
             figure: 11,
             patches: 39358,
@@ -119,6 +132,14 @@ impl PaperScene {
         file::load(SourceText::new(self.file, self.text), |_| {
             Ok((PathBuf::from("teapot.bpt"), bpt::parse("teapot.bpt", teapot::PATCHES, OnInvalid::Refuse)?))
         })
+    }
+
+    /// The camera by which it is measured: that of its picture, but for the field of view.
+    pub fn camera(&self, picture: &Camera) -> Camera {
+        match (*picture, self.field) {
+            (Camera::LookAt { eye, look_at, up, .. }, Some(fov)) => Camera::LookAt { eye, look_at, up, fov },
+            (camera, _) => camera,
+        }
     }
 
     /// Its name, for tables.
