@@ -46,10 +46,10 @@ fn trace(criterion: &mut Criterion, name: &str, tracer: &dyn Tracer, rays: &[Ray
 fn all_methods<P: FromFile>(criterion: &mut Criterion, name: &str, model: &Model) {
     let lowered = Lowered::<P>::build(model, Stages::ALL, &Preparation::default()).expect("the model is valid");
     let (views, limits) = (Views::of(&lowered), Limits::default());
-    let newton = MethodTracer::<Newton, _>::new(views, limits, true);
-    let newton_coherent = MethodTracer::<NewtonCoherent, _>::new(views, limits, true);
-    let clipping = MethodTracer::<Clipping, _>::new(views, limits, true);
-    let clipping_coherent = MethodTracer::<ClippingCoherent, _>::new(views, limits, true);
+    let newton = MethodTracer::<Newton, _>::new(views, limits, None);
+    let newton_coherent = MethodTracer::<NewtonCoherent, _>::new(views, limits, None);
+    let clipping = MethodTracer::<Clipping, _>::new(views, limits, None);
+    let clipping_coherent = MethodTracer::<ClippingCoherent, _>::new(views, limits, None);
     let tracers: [(&str, &dyn Tracer); 4] = [
         ("newton", &newton),
         ("newton-coherent", &newton_coherent),

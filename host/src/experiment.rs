@@ -144,7 +144,7 @@ impl Experiment<'_> {
         repetitions: u32,
         truths: Option<&[Truth]>,
     ) -> Result<Vec<Run>, LowerError> {
-        let bend = |subject: &Subject| subject.without.0.bend_halving;
+        let bend = |subject: &Subject| subject.parts.0.bend_halving;
         let in_view = |subject: &Subject| subject.method.needs_view();
         let prepare = |bend_halving: bool| {
             let of = subjects.iter().find(|(subject, _)| bend(subject) == bend_halving && !in_view(subject));

@@ -73,7 +73,7 @@ fn stories<P: FromFile>(
 ) -> Result<Vec<Story>, LowerError> {
     let mut lowered = Lowered::<P>::for_picture(model, Stages::of(settings.method), settings, view)?;
     let unit = lowered.scene().frame().unscale().to_f64();
-    let tracer = tracers(&mut lowered, view, settings, true, Others { closest: false, any: false })?.picture;
+    let tracer = tracers(&mut lowered, view, settings, Others { closest: false, any: false })?.picture;
     let side = view.sampling.side();
     let mut stories = Vec::new();
     for line in side * py..side * (py + 1) {

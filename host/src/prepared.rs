@@ -60,12 +60,12 @@ pub fn unfit_for(model: &Model, precision: Precision) -> Vec<(usize, String)> {
 }
 
 /// The tracer of the method `M` under the limits of `settings`.
-fn tracer<'m, M, P>(views: Views<'m, P>, settings: &Settings, coherence: bool) -> Box<dyn Tracer<Told<M, P>> + 'm>
+fn tracer<'m, M, P>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer<Told<M, P>> + 'm>
 where
     M: Method<P> + 'm,
     P: Point,
 {
-    Box::new(MethodTracer::<M, P>::new(views, settings.limits(), coherence).by(settings.without.reading()))
+    Box::new(MethodTracer::<M, P>::new(views, settings.limits(), settings.parts.reading()))
 }
 
 /// Which rays are traced beside those of a picture's scan lines.
@@ -91,14 +91,13 @@ fn lines_tracer<'m, M, P>(
     seen: (Scene<'m, P>, View<'m, P>),
     picture: &camera::View,
     settings: &Settings,
-    coherence: bool,
     others: Option<Box<dyn Tracer + 'm>>,
 ) -> Box<dyn Tracer + 'm>
 where
     M: ViewMethod<P> + 'm,
     P: Point,
 {
-    Box::new(ViewTracer::<M, P>::new(seen, picture, settings.limits(), coherence, others))
+    Box::new(ViewTracer::<M, P>::new(seen, picture, settings.limits(), settings.parts.0.coherence, others))
 }
 
 /// The tracers of the picture's rays, by the method of `settings`. The memory of its view, if it needs one, has to have been
@@ -107,7 +106,6 @@ pub(crate) fn tracers<'m, P: Point>(
     lowered: &'m mut Lowered<P>,
     picture: &camera::View,
     settings: &Settings,
-    coherence: bool,
     others: Others,
 ) -> Result<Tracers<'m>, LowerError> {
     let (views, seen) = if settings.method.needs_view() {
@@ -116,16 +114,14 @@ pub(crate) fn tracers<'m, P: Point>(
     } else {
         (Views::of(lowered), None)
     };
-    let rays = |coherence| rays_tracer(views, settings, coherence);
-    let closest = || others.closest.then(|| rays(true));
+    let rays = || rays_tracer(views, settings);
+    let closest = || others.closest.then(rays);
     let of_picture = match (settings.method, seen) {
-        (Which::NewtonPredicted, Some(seen)) => {
-            lines_tracer::<NewtonPredicted, P>(seen, picture, settings, coherence, closest())
-        }
+        (Which::NewtonPredicted, Some(seen)) => lines_tracer::<NewtonPredicted, P>(seen, picture, settings, closest()),
         (Which::ClippingPredicted, Some(seen)) => {
-            lines_tracer::<ClippingPredicted, P>(seen, picture, settings, coherence, closest())
+            lines_tracer::<ClippingPredicted, P>(seen, picture, settings, closest())
         }
-        _ => rays(coherence),
+        _ => rays(),
     };
     Ok(Tracers { picture: of_picture, any: others.any.then(|| any_tracer(views, settings)) })
 }
@@ -140,20 +136,20 @@ fn most_lane_bytes_of<P: Point>(method: Which, lowered: &Lowered<P>) -> Option<L
 }
 
 /// The tracer of any rays, of the closest hits.
-fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings, coherence: bool) -> Box<dyn Tracer + 'm> {
+fn rays_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
     match settings.method.of_any_rays() {
-        Which::Newton => tracer::<Newton, _>(views, settings, coherence),
-        Which::NewtonCoherent | Which::NewtonPredicted => tracer::<NewtonCoherent, _>(views, settings, coherence),
-        Which::Clipping => tracer::<Clipping, _>(views, settings, coherence),
-        Which::ClippingCoherent | Which::ClippingPredicted => tracer::<ClippingCoherent, _>(views, settings, coherence),
+        Which::Newton => tracer::<Newton, _>(views, settings),
+        Which::NewtonCoherent | Which::NewtonPredicted => tracer::<NewtonCoherent, _>(views, settings),
+        Which::Clipping => tracer::<Clipping, _>(views, settings),
+        Which::ClippingCoherent | Which::ClippingPredicted => tracer::<ClippingCoherent, _>(views, settings),
     }
 }
 
 /// The tracer of any rays, of the first hits that are found, by [`Which::of_any_hits`].
 fn any_tracer<'m, P: Point>(views: Views<'m, P>, settings: &Settings) -> Box<dyn Tracer + 'm> {
     match settings.method.of_any_hits() {
-        Which::Newton => tracer::<AnyHit<Newton>, _>(views, settings, true),
-        _ => tracer::<AnyHit<Clipping>, _>(views, settings, true),
+        Which::Newton => tracer::<AnyHit<Newton>, _>(views, settings),
+        _ => tracer::<AnyHit<Clipping>, _>(views, settings),
     }
 }
 
@@ -199,7 +195,7 @@ impl Prepared {
     /// The tracer of the method, and under the limits, of `settings`: of the closest hits. The method's stages have to have
     /// been built. In place of a method that needs a view it is that of [`Which::of_any_rays`].
     pub fn tracer(&self, settings: &Settings) -> Box<dyn Tracer + '_> {
-        any!(self, lowered => rays_tracer(Views::of(lowered), settings, true))
+        any!(self, lowered => rays_tracer(Views::of(lowered), settings))
     }
 
     /// Why the kernel cannot trace all of the picture's rays as those of one view, if it cannot. Needs no stages.
@@ -216,9 +212,8 @@ impl Prepared {
         any!(self, lowered => lowered.take_view(picture, given))
     }
 
-    /// The tracers of the picture's rays, under the limits and by the method of `settings`, and of what `others` wants. Without
-    /// `coherence` a coherent method begins anew with every ray of the picture. The method's stages have to have been built, and
-    /// the memory of its view taken, if it needs one.
+    /// The tracers of the picture's rays, under the limits and by the method of `settings`, and of what `others` wants. The
+    /// method's stages have to have been built, and the memory of its view taken, if it needs one.
     ///
     /// # Errors
     /// As [`Lowered::seen`].
@@ -226,10 +221,9 @@ impl Prepared {
         &mut self,
         picture: &camera::View,
         settings: &Settings,
-        coherence: bool,
         others: Others,
     ) -> Result<Tracers<'_>, LowerError> {
-        any!(self, lowered => tracers(lowered, picture, settings, coherence, others))
+        any!(self, lowered => tracers(lowered, picture, settings, others))
     }
 
     /// The tracer of all hits; `None` if the method looks for no more than the closest.
@@ -237,8 +231,8 @@ impl Prepared {
         any!(self, lowered => {
             let views = Views::of(lowered);
             match settings.method {
-                Which::Newton => Some(tracer::<AllHits<Newton>, _>(views, settings, true)),
-                Which::Clipping => Some(tracer::<AllHits<Clipping>, _>(views, settings, true)),
+                Which::Newton => Some(tracer::<AllHits<Newton>, _>(views, settings)),
+                Which::Clipping => Some(tracer::<AllHits<Clipping>, _>(views, settings)),
                 _ => None,
             }
         })

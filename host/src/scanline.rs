@@ -217,22 +217,15 @@ pub trait Tracer<H = Found>: Send + Sync {
 pub struct MethodTracer<'m, M, P: Point> {
     views: Views<'m, P>,
     limits: Limits<P::Scalar>,
-    /// Whether rays leave something to the next.
-    coherence: bool,
     switches: Option<Switches>,
     method: PhantomData<M>,
 }
 
 impl<'m, M: Method<P>, P: Point> MethodTracer<'m, M, P> {
-    /// The tracer of the method `M`, such as [`Newton`](crate::method::Newton), over `views` and under `limits`. Without
-    /// `coherence` a coherent method begins anew with every ray: what it then gains is owed to its order of search alone.
-    pub fn new(views: Views<'m, P>, limits: Limits<P::Scalar>, coherence: bool) -> Self {
-        MethodTracer { views, limits, coherence, switches: None, method: PhantomData }
-    }
-
-    /// The same by another reading of the paper.
-    pub fn by(self, switches: Option<Switches>) -> Self {
-        MethodTracer { switches, ..self }
+    /// The tracer of the method `M`, such as [`Newton`](crate::method::Newton), over `views` and under `limits`, by another reading
+    /// of the paper if `switches` say so.
+    pub fn new(views: Views<'m, P>, limits: Limits<P::Scalar>, switches: Option<Switches>) -> Self {
+        MethodTracer { views, limits, switches, method: PhantomData }
     }
 
     /// Slots of coherence memory that a lane needs.
@@ -364,14 +357,11 @@ impl<M: Method<P>, P: Point> MethodLane<'_, M, P> {
     /// Traces what is ready, into `found`; this is what is timed.
     fn trace_ready(&mut self, tally: &mut Tally) {
         self.found.clear();
-        let MethodTracer { views, limits, coherence, switches, .. } = self.tracer;
+        let MethodTracer { views, limits, switches, .. } = self.tracer;
         let of_nets = &views.at(Place::Nets);
         let clock = Clock::start();
         let mut counting = Counting::new(tally);
         self.found.extend(self.ready.iter().map(|ready| {
-            if !coherence {
-                begin_line(&mut self.line, &mut self.memory);
-            }
             let work = counting.next();
             ready.as_ref().map(|(place, origin, direction, interval)| {
                 let views = if *place == Place::File { views } else { of_nets };

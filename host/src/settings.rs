@@ -136,8 +136,9 @@ pub struct Settings {
     pub clip_threshold: f64,
     /// The factor of eq. (1).
     pub critical_factor: f64,
-    /// The parts of the paper's methods that are there; in STATS those that are not.
-    pub without: On,
+    /// The parts of the methods that are there; serialised, `without` those that are not.
+    #[serde(rename = "without")]
+    pub parts: On,
     /// How far from the ray a root may lie, as a share of its surface's size; `None` for the precision's default.
     pub tolerance: Option<f64>,
     /// How far a patch may be from flat, as a share of the scene's diagonal.
@@ -164,7 +165,7 @@ impl Default for Settings {
             newton_starts: limits.newton_starts,
             clip_threshold: limits.clip_threshold,
             critical_factor: limits.critical_factor,
-            without: On::ALL,
+            parts: On::ALL,
             tolerance: None,
             flatness: preparation.subdivision.flatness,
             grid_density: preparation.grid.density,
@@ -214,7 +215,7 @@ impl Settings {
         set(&mut self.newton_starts, flags.newton_starts);
         set(&mut self.clip_threshold, flags.clip_threshold);
         set(&mut self.critical_factor, flags.critical_factor);
-        self.without = if flags.by_the_letter { On::LETTER } else { On::ALL }.without(&flags.without);
+        self.parts = if flags.by_the_letter { On::LETTER } else { On::ALL }.without(&flags.without);
         self.tolerance = flags.tolerance.or(self.tolerance);
         set(&mut self.flatness, flags.flatness);
         set(&mut self.grid_density, flags.grid_density);
@@ -256,7 +257,7 @@ impl Settings {
         preparation.subdivision.flatness = S::from_f64(self.flatness);
         preparation.subdivision.depth = self.limits.depth;
         preparation.subdivision.patches_per_surface = self.limits.patches_per_surface;
-        preparation.switches = self.without.0;
+        preparation.switches = self.parts.0;
         preparation.grid.density = S::from_f64(self.grid_density);
         preparation.own_origins = !self.method.needs_view();
         preparation.arena_bytes = self.limits.arena_bytes.unwrap_or(u64::MAX);

@@ -18,9 +18,6 @@ use crate::stats::Used;
 /// How a picture is to be traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wishes {
-    /// Whether rays leave something to the next. Without, a coherent method begins anew with every ray: what it then
-    /// gains is owed to its order of search alone.
-    pub coherence: bool,
     /// Whether rays that are none of the picture's are traced, such as those that mirrors send on.
     pub others: bool,
     /// Whether rays are traced that ask whether something lies on them, such as those to lights.
@@ -29,12 +26,12 @@ pub struct Wishes {
 
 impl Wishes {
     /// Primary rays alone.
-    pub const PRIMARY: Self = Wishes { coherence: true, others: false, any: false };
+    pub const PRIMARY: Self = Wishes { others: false, any: false };
 
     /// What drawing a scene of this appearance takes.
     pub fn of(appearance: &Appearance) -> Self {
         let others = appearance.materials.iter().any(|material| material.reflect > 0.0);
-        Wishes { others, any: appearance.has_shadow_rays(), ..Wishes::PRIMARY }
+        Wishes { others, any: appearance.has_shadow_rays() }
     }
 }
 
@@ -104,7 +101,7 @@ impl Viewed {
         bytes.add_all(&prepared.view_bytes());
         let (surfaces, patches) = (prepared.surfaces(), prepared.patches());
         let others = Others { closest: wishes.others, any: wishes.any };
-        let tracers = prepared.tracers(picture, settings, wishes.coherence, others)?;
+        let tracers = prepared.tracers(picture, settings, others)?;
         let mut lane = tracers.picture.lane_bytes();
         if let Some(any) = &tracers.any {
             lane.scratch += any.lane_bytes().scratch;

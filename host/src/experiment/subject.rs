@@ -52,8 +52,9 @@ pub struct Subject {
     pub name: &'static str,
     /// The method.
     pub method: Method,
-    /// The parts that are there; serialised, those that are not.
-    pub without: On,
+    /// The parts that are there; serialised, `without` those that are not.
+    #[serde(rename = "without")]
+    pub parts: On,
     /// The share of an interval that a clip has to remove; `None` for the paper's 20 %.
     pub clip_threshold: Option<f64>,
     /// The factor of eq. (1); `None` for the paper's 1.
@@ -61,15 +62,15 @@ pub struct Subject {
 }
 
 impl Subject {
-    fn new(name: &'static str, method: Method, on: On) -> Self {
-        Subject { name, method, without: on, clip_threshold: None, critical_factor: None }
+    fn new(name: &'static str, method: Method, parts: On) -> Self {
+        Subject { name, method, parts, clip_threshold: None, critical_factor: None }
     }
 
     /// How it is traced, all else being as in `settings`.
     pub fn settings(&self, settings: &Settings) -> Settings {
         Settings {
             method: self.method,
-            without: self.without,
+            parts: self.parts,
             clip_threshold: self.clip_threshold.unwrap_or(settings.clip_threshold),
             critical_factor: self.critical_factor.unwrap_or(settings.critical_factor),
             ..*settings

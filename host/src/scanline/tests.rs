@@ -135,7 +135,7 @@ fn line_numbers_start_again_before_they_run_out() {
     let settings = Settings { method: Which::NewtonCoherent, ..Settings::default() };
     let prepared = Prepared::build(&model, Stages::of(settings.method), &settings).expect("there is memory");
     let Prepared::WeightedF64(lowered) = &prepared else { panic!("a sphere is rational") };
-    let tracer = MethodTracer::<NewtonCoherent, _>::new(Views::of(lowered), settings.limits(), true);
+    let tracer = MethodTracer::<NewtonCoherent, _>::new(Views::of(lowered), settings.limits(), None);
     let mut lane = MethodLane {
         tracer: &tracer,
         scratch: Default::default(),

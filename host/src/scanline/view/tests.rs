@@ -8,11 +8,12 @@ use crate::scene::sampling::Sampling;
 use crate::scene::teapot;
 use crate::scene::trace::{Method, Precision};
 use crate::settings::Settings;
+use crate::settings::switches::{On, Switch};
 use crate::viewed::{Viewed, Wishes};
 
 /// What became of the picture's rays, and the sums without the seconds.
-fn traced(model: &Model, settings: &Settings, picture: &View, wishes: Wishes) -> (Vec<Outcome>, Tally) {
-    let mut viewed = Viewed::build(model, settings, picture, wishes).expect("there is memory");
+fn traced(model: &Model, settings: &Settings, picture: &View) -> (Vec<Outcome>, Tally) {
+    let mut viewed = Viewed::build(model, settings, picture, Wishes::PRIMARY).expect("there is memory");
     let (tracer, used) = viewed.tracer().expect("it was just made ready");
     assert_eq!(used.lane.line > 0, settings.method.needs_view());
     let (mut lane, mut outcomes, mut tally) = (tracer.lane(), Vec::new(), Tally::default());
@@ -39,9 +40,9 @@ fn a_view_and_single_rays_hit_alike() {
         for method in [Method::NewtonPredicted, Method::ClippingPredicted] {
             for precision in [Precision::F32, Precision::F64] {
                 let settings = Settings { method, precision, flatness: 0.005, ..Settings::default() };
-                let (in_view, tally) = traced(&model, &settings, &picture, Wishes::PRIMARY);
+                let (in_view, tally) = traced(&model, &settings, &picture);
                 let one_by_one = Settings { method: method.of_any_rays(), ..settings };
-                let (alone, _) = traced(&model, &one_by_one, &picture, Wishes::PRIMARY);
+                let (alone, _) = traced(&model, &one_by_one, &picture);
                 assert_eq!(tally.rays, in_view.len() as u64);
                 let mut others = 0;
                 for (a, b) in in_view.iter().zip(&alone) {
@@ -66,9 +67,9 @@ fn coherence_changes_work_and_no_hits() {
     let (model, picture) = (teapot(), picture(40));
     for &method in Method::value_variants() {
         let settings = Settings { method, flatness: 0.005, ..Settings::default() };
-        let (with, tally) = traced(&model, &settings, &picture, Wishes::PRIMARY);
-        let forgetful = Wishes { coherence: false, ..Wishes::PRIMARY };
-        let (without, other) = traced(&model, &settings, &picture, forgetful);
+        let (with, tally) = traced(&model, &settings, &picture);
+        let forgetful = Settings { parts: On::ALL.without(&[Switch::Coherence]), ..settings };
+        let (without, other) = traced(&model, &forgetful, &picture);
         assert_eq!(other.count("verified") + other.count("decided_by_list") + other.count("start_failed"), 0);
         assert_eq!(tally.count("verified") > 0, method.is_coherent(), "{method:?}");
         for (a, b) in with.iter().zip(&without) {
