@@ -75,6 +75,12 @@ impl Run {
 pub struct Counts([u64; Work::COUNT]);
 
 impl Counts {
+    /// These counters by their names, and no others.
+    #[cfg(test)]
+    pub(crate) fn of_named(named: &[(&str, u64)]) -> Self {
+        Counts(Work::NAMES.map(|name| named.iter().find(|(known, _)| *known == name).map_or(0, |&(_, count)| count)))
+    }
+
     /// A counter by its name in [`Work`]; 0 for a name that there is not.
     pub fn of(&self, name: &str) -> u64 {
         Work::NAMES.iter().zip(self.0).find_map(|(&known, count)| (known == name).then_some(count)).unwrap_or(0)
@@ -241,3 +247,6 @@ impl Experiment<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -268,3 +268,22 @@ impl<'p> OnePaperScene<'p> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    /// The bar ends with the last pass.
+    #[test]
+    fn as_many_passes_as_are_said() {
+        let flags = Flags { flatness: Some(0.02), ..Flags::default() };
+        let scene = OnePaperScene::load(&SCENES[0], [[8, 6], [6, 4]], &flags).unwrap_or_else(|_| panic!("it is valid"));
+        let steps = AtomicU64::new(0);
+        let step = || {
+            steps.fetch_add(1, Ordering::Relaxed);
+        };
+        assert_eq!(scene.measure(3, 2, &step).expect("there is memory").numerical.letter.len(), 3);
+        assert_eq!(steps.load(Ordering::Relaxed), passes(3, 2));
+    }
+}

@@ -273,3 +273,6 @@ impl Report {
         notes
     }
 }
+
+#[cfg(test)]
+mod tests;
