@@ -8,7 +8,7 @@ use crate::input::{Case, OfKind, interval, limits, subdivision, with_kind};
 use crate::lane::{Lane, Way};
 use crate::ready::prepare_apart;
 use crate::scribble::scribble;
-use crate::truth::Truth;
+use crate::truth::{Original, Truth};
 use patchray::limits::{Acceptance, Limits};
 use patchray::scalar::Scalar;
 
@@ -54,12 +54,11 @@ impl OfKind for Coherence {
             };
             let range = [interval.min(), interval.max()];
             let truth = Truth::new(case, &line, 0.0);
-            let mut answered = false;
+            let mut original = Original::Open;
             for way in [way.original().unwrap_or(Way::Clipping), way] {
                 let kept = lane.remembered.clone();
                 let extent = way.extent(&prepared, limits.acceptance);
-                let bound = answered && way.original().is_some();
-                let answer = truth.judged(&format!("{way:?}"), &limits, bound, |limits| {
+                let answer = truth.judged(&format!("{way:?}"), &limits, original, |limits| {
                     // Memory as it was: what a search leaves there would help the next.
                     lane.remembered.clone_from(&kept);
                     let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, limits);
@@ -67,7 +66,9 @@ impl OfKind for Coherence {
                     within_worst_case(&lane.work, limits, &extent, way);
                     answer
                 });
-                answered = answer.is_ok();
+                if answer.is_ok() && way.original().is_some() {
+                    original = Original::Answers;
+                }
                 for hit in answer.into_iter().flatten() {
                     in_range(&hit, range, surfaces, way);
                     on_the_ray(&hit, case, &line, &limits, 0.0, way);

@@ -7,7 +7,7 @@ use crate::common::Kind;
 use crate::input::{Case, OfKind, interval, limits, subdivision, with_kind};
 use crate::lane::{Lane, Way};
 use crate::ready::prepare_apart;
-use crate::truth::Truth;
+use crate::truth::{Original, Truth};
 use patchray::scalar::Scalar;
 
 pub(crate) fn check(bytes: &[u8]) {
@@ -41,7 +41,7 @@ impl OfKind for Honest {
         let mut lane = Lane::<P>::new(case.model.surfaces.len());
         let name = format!("{way:?} {:?}", limits.acceptance);
         let answer = Truth::new(case, &line, 0.0)
-            .judged(&name, &limits, false, |limits| lane.closest(way, &prepared, 0, &ray, &interval, limits));
+            .judged(&name, &limits, Original::Open, |limits| lane.closest(way, &prepared, 0, &ray, &interval, limits));
         for hit in answer.into_iter().flatten() {
             on_the_ray(&hit, case, &line, &limits, 0.0, &name);
         }

@@ -28,6 +28,16 @@ pub(crate) struct Truth<'c> {
     clear: OnceCell<bool>,
 }
 
+/// What the original of a call answers to the same ray, which the call then has to answer, too, however hard it is.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Original {
+    /// There is none, or it gives the ray up.
+    Open,
+    Answers,
+    /// The call's ray is rounded otherwise, so that it need not answer what a rounding changes.
+    AnswersRoundedOtherwise,
+}
+
 /// Parts that the oracle looks at of a surface. A pole met head on takes up to 2,000; rays that take more lie along a surface, and
 /// nothing is known of them.
 const DOMAINS: usize = 2500;
@@ -72,25 +82,28 @@ impl<'c> Truth<'c> {
     }
 
     /// What a call answers under these limits, or, where it may not give up, under default budgets; it is right, was given up, or
-    /// nothing is sure. `answered` is whether the call has to answer however hard the ray, since its original does.
+    /// nothing is sure.
     pub(crate) fn judged<S: Scalar>(
         &self,
         name: &str,
         limits: &Limits<S>,
-        answered: bool,
+        original: Original,
         mut call: impl FnMut(&Limits<S>) -> Answer<S>,
     ) -> Answer<S> {
         let mut answer = call(limits);
-        if out_of_budget(&answer) && (answered || self.is_clear()) {
+        let answered = |original| match original {
+            Original::Open => false,
+            Original::Answers => true,
+            Original::AnswersRoundedOtherwise => self.is_sure(),
+        };
+        if out_of_budget(&answer) && (answered(original) || self.is_clear()) {
             answer = call(&with_default_budgets(limits));
-            let why = if answered { "its original answers" } else { "is clear" };
+            let why = if original == Original::Open { "is clear" } else { "its original answers" };
             assert!(!out_of_budget(&answer), "{name}: {answer:?} under default budgets of a ray that {why}; {self}");
         }
         if let Ok(answer) = answer {
-            let convicted = self.is_wrong(&answer, &self.quick)
-                && self.can_be_judged()
-                && self.sure().margin >= Shares::of(self.case.precision).judged
-                && self.is_wrong(&answer, self.sure());
+            let convicted =
+                self.is_wrong(&answer, &self.quick) && self.is_sure() && self.is_wrong(&answer, self.sure());
             assert!(!convicted, "{name} answers {answer:?}; {self}");
         }
         answer
@@ -135,6 +148,11 @@ impl<'c> Truth<'c> {
             verdict.margin >= clear && verdict.unresolved == 0
         };
         *self.clear.get_or_init(|| self.can_be_judged() && self.case.model.surfaces.iter().all(of))
+    }
+
+    /// Whether the ray, moved by as much as rounding moves it, is answered alike.
+    fn is_sure(&self) -> bool {
+        self.can_be_judged() && self.sure().margin >= Shares::of(self.case.precision).judged
     }
 
     /// Whether the oracle in double-double can tell more than how long it takes.

@@ -10,7 +10,7 @@ use crate::lane::{Lane, Way};
 use crate::ready::{Takes, prepare};
 use crate::rooms::{InView, LineRoom, Thread, ViewRoom};
 use crate::scribble::scribble;
-use crate::truth::Truth;
+use crate::truth::{Original, Truth};
 use patchray::limits::{Acceptance, Extent, Limits};
 use patchray::line::Window;
 use patchray::ray::Interval;
@@ -108,8 +108,8 @@ impl OfKind for Views {
             let answer = match original {
                 Some(original) => {
                     let truth = Truth::new(case, &ray_line, at_hand);
-                    let answered = alone(&mut lane, original, &prepared, &ray_line, &truth, &limits);
-                    truth.judged(&format!("{method:?}"), &limits, answered, trace)
+                    let original = alone(&mut lane, original, &prepared, &ray_line, &truth, &limits);
+                    truth.judged(&format!("{method:?}"), &limits, original, trace)
                 }
                 None => trace(&limits),
             };
@@ -132,13 +132,16 @@ fn alone<P: Kind>(
     line: &RayLine,
     truth: &Truth<'_>,
     limits: &Limits<P::Scalar>,
-) -> bool {
+) -> Original {
     let [origin, direction] = [line.origin, line.direction].map(|v| v.map(P::Scalar::from_f64));
     let (Ok(ray), Some(interval)) = (prepared.scene().ray(origin, direction), interval(line)) else {
-        return false;
+        return Original::Open;
     };
     let trace = |limits: &Limits<P::Scalar>| lane.closest(way, prepared, 0, &ray, &interval, limits);
-    truth.judged(&format!("{way:?}"), limits, false, trace).is_ok()
+    match truth.judged(&format!("{way:?}"), limits, Original::Open, trace) {
+        Ok(_) => Original::AnswersRoundedOtherwise,
+        Err(_) => Original::Open,
+    }
 }
 
 /// The ray of a place, as the oracle takes it.
