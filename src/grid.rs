@@ -3,11 +3,12 @@
 //! Source: J. G. Cleary and G. Wyvill, "Analysis of an algorithm for fast ray tracing using uniform space subdivision",
 //! The Visual Computer 4(2), 1988. The items of each voxel lie in one array of references with offsets.
 //!
-//! An item stands in every voxel that its box along the axes touches, so the voxels of an item form a block. A line passes
-//! a block in one stretch, and so an item needs testing only in the first voxel of that stretch: where the voxel that the
-//! line came from does not hold it. Each reference carries six bits that say which of the six neighbours hold the item
-//! too; no marks are kept per ray. Each voxel's offset carries eight bits that say in which octants of directions nothing
-//! lies from there on, so that a line is not followed into empty space: an eighth of all steps on the common teapot.
+//! Ours, since the paper says no more than "the corresponding voxels": an item stands in every voxel that its box along the axes
+//! touches, so the voxels of an item form a block. A line passes a block in one stretch, and so an item needs testing only in the
+//! first voxel of that stretch: where the voxel that the line came from does not hold it. Each reference carries six bits that say
+//! which of the six neighbours hold the item too; no marks are kept per ray. Each voxel's offset carries eight bits that say in
+//! which octants of directions nothing lies from there on, so that a line is not followed into empty space: an eighth of all steps
+//! on the common teapot.
 
 use crate::arena::{Arena, Need};
 use crate::frame::Aabb;

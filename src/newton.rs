@@ -3,9 +3,13 @@
 //! Source: the paper's section "Performance Comparison of Barth and Stürzlinger's Algorithm": the control net is projected
 //! on the two planes, once for all starts of a ray on a surface, and the two-dimensional system is solved on it.
 //!
-//! A step is judged by what it leaves, which Taylor's theorem bounds before it is taken
-//! ([`Net::bend`](crate::surface::Net::bend)), so the last step needs no evaluation after it. A small step alone is never
-//! enough.
+//! The paper says no more of the iteration. Ours:
+//! - a step is judged by what it leaves, which Taylor's theorem bounds before it is taken
+//!   ([`Net::bend`](crate::surface::Net::bend)), so the last step needs no evaluation after it; a small step alone is never
+//!   enough;
+//! - a step that does not lead closer is halved;
+//! - an iterate beyond an edge is held there, and given up if the next one goes as far;
+//! - a root beyond an edge by less than the tolerance is looked at from the edge.
 
 use crate::bernstein::{BasisView, Full};
 use crate::limits::{Limit, Limits, Work};
@@ -157,7 +161,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
             if residual <= noise {
                 return Ok(Some(Place { at, local }));
             }
-            // Damping. A NaN counts as growth.
+            // Ours: damping. A NaN counts as growth.
             if !(residual < last) {
                 if halvings >= limits.newton_halvings {
                     return Ok(None);
@@ -176,14 +180,14 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
             if local.is_linear::<P::Flat>(surface.strays([du, dv]), [du, dv], exact)
                 && local.is_regular_enough::<P::Flat>([du, dv], exact)
             {
-                // Converged; what is left to see is whether the root lies on the surface or beyond its edge. Of a root on
+                // Ours: converged; what is left to see is whether the root lies on the surface or beyond its edge. Of a root on
                 // an edge the step may leave as much on the far side as on the near: neighbours must not both refuse it. Toward
                 // an edge the weight may fall, by which distances grow: of what is held there it is to be looked at there.
                 let seen = !P::RATIONAL || at_edge || off == [zero; 2];
                 if seen && local.may_hold(off, exact) {
                     return Ok(Some(Place { at: on_surface, local }));
                 }
-                // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
+                // Ours: what the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
                 // far along the surface: one more, from the edge, says on which side of it the root lies.
                 if at_edge {
                     return Ok(local.on_edge(next, exact).map(|at| Place { at, local }));
@@ -192,7 +196,7 @@ impl<'a, 's, 'm, P: Point> Solver<'a, 's, 'm, P> {
                 (at, last) = (on_surface, P::Scalar::INFINITY);
                 continue;
             }
-            // An iterate outside is held at the edge, where a root may lie; one that goes on as far is leaving for good.
+            // Ours: an iterate outside is held at the edge, where a root may lie; one that goes on as far is leaving for good.
             let beyond = off[0].abs() + off[1].abs();
             if !(beyond + beyond <= beyond_before) {
                 return Ok(None);

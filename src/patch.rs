@@ -309,7 +309,7 @@ impl<S: Scalar> Patch<S> {
         !self.domain.is_rough() && self.stray * e1.greater(e2) < crossing.along[2].abs()
     }
 
-    /// Start: where the ray meets the parallelogram's plane, held within the box. `None` edge on.
+    /// Start: where the ray meets the parallelogram's plane; ours, held within the box. `None` edge on.
     ///
     /// The parallelogram is taken in the middle between the box's faces (ours): the patch strays from it to both sides by
     /// half of what it strays from the plane of its corners to one.

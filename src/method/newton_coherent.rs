@@ -1,9 +1,9 @@
 //! The improved numerical method: scan-line coherence, and a testing ray that verifies the closest hit.
 //!
-//! The first ray of a scan line that meets a surface searches the surface's grid; a departure: only up to the closest point. For the next ray Newton's method
-//! starts at the previous (u, v); from the point it finds, a testing ray goes back toward the origin. If the testing ray
-//! meets only the patch that holds the point, and meets it once by eq. (1), the point is the closest. Otherwise Newton's
-//! method from the patches that it meets decides.
+//! The first ray of a scan line that meets a surface searches the surface's grid; a departure: only up to the closest point. For the
+//! next ray Newton's method starts at the previous (u, v); from the point it finds, a testing ray goes back toward the origin. If
+//! the testing ray meets only the patch that holds the point, and meets it once by eq. (1), the point is the closest. Otherwise
+//! Newton's method from the patches that it meets decides.
 //!
 //! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm". Where its text leaves a choice:
 //! - ours: a ray that misses a surface empties the surface's memory, so that the next one searches in full;

@@ -10,7 +10,7 @@ use rayon::ThreadPool;
 use serde::Serialize;
 
 use super::outputs::{Outputs, StatsOutputs};
-use super::{Failure, pool, progress};
+use super::{Failure, hear_parts, pool, progress};
 use crate::drawing::{Drawing, Drawn, Watch, draw};
 use crate::judge::{Agreement, OracleStats, Truth, ask};
 use crate::oracle::Oracle;
@@ -26,7 +26,7 @@ use crate::scene::teapot::common_scene;
 use crate::scene::trace::{Method, Precision};
 use crate::settings::{Flags, Settings, SizeFlag};
 use crate::shade::shadows::NO_SHADOWS;
-use crate::stats::{SCHEMA, Stats, Used};
+use crate::stats::{Asked, SCHEMA, Stats, Used};
 use crate::viewed::{Viewed, Wishes};
 
 /// The command line without a verb.
@@ -85,6 +85,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     Outputs::of_picture(Some(&output), &[], flags)?;
     let Scene { model, description, appearance, .. } = common_scene()?;
     let settings = Settings::of_flags(flags);
+    hear_parts(flags.method, Asked::Closest, settings.parts)?;
     let mut png = Output::create(&output)?;
     let stats_outputs = StatsOutputs::create(flags)?;
     let view = description.camera.view(size.size.unwrap_or(description.image.size));

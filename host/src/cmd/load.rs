@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::outputs::Outputs;
-use super::{Failure, say};
+use super::{Failure, hear_parts, say};
 use crate::lower::{LowerError, Stages};
 use crate::prepared::{Prepared, unfit_for};
 use crate::scene::appearance::Appearance;
@@ -17,6 +17,7 @@ use crate::scene::patches;
 use crate::scene::spline::SplineSummary;
 use crate::scene::trace::Precision;
 use crate::settings::{Flags, Settings};
+use crate::stats::Asked;
 
 /// Surfaces, and how to trace them.
 pub struct Loaded {
@@ -59,6 +60,7 @@ pub(crate) fn scene(path: &Path, flags: &Flags, outputs: &Outputs) -> Result<Loa
     let Scene { source, description, model, files, appearance } = scene;
     outputs.spare(files.iter().map(|file| file.path.as_path()))?;
     let settings = Settings::of_scene(flags, &description.trace, &source)?;
+    hear_parts(Some(settings.method), Asked::Closest, settings.parts)?;
     for file in &files {
         name_skipped(&file.skipped);
     }
@@ -83,6 +85,7 @@ pub(crate) fn patches(path: &Path, flags: &Flags, outputs: &Outputs) -> Result<L
     let files = vec![LoadedFile { name, surfaces: 0..file.model.surfaces.len(), splines: file.splines }];
     files.iter().for_each(LoadedFile::name_trims);
     let settings = Settings::of_flags(flags);
+    hear_parts(Some(settings.method), Asked::Closest, settings.parts)?;
     Loaded { model: file.model, files, scene: None, settings }.fit(flags.on_invalid())
 }
 

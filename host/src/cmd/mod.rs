@@ -31,6 +31,8 @@ use crate::lower::LowerError;
 use crate::output::OutputError;
 use crate::picture::rows::Rows;
 use crate::scene::error::InputError;
+use crate::scene::trace::Method;
+use crate::settings::switches::{On, Switch};
 use crate::stats::{Asked, Stats};
 
 /// Why a command did not do what it was asked to.
@@ -124,6 +126,28 @@ impl Failure {
 /// Says something on standard error. That nobody can hear it is no reason to end.
 pub fn say(text: std::fmt::Arguments) {
     let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// Refuses to leave out parts of the paper's methods where nothing would come of it: of several methods at once (`None`), of one
+/// that has none of them, or where more than the closest hit is asked for.
+pub(crate) fn hear_parts(method: Option<Method>, asked: Asked, parts: On) -> Result<(), Failure> {
+    let (heard, of): (&[Switch], _) = match method {
+        None => (&[], "several methods".to_owned()),
+        Some(method) if method.needs_view() => {
+            (&[Switch::Coherence, Switch::BendHalving], format!("`{}`", method.name()))
+        }
+        Some(_) if asked != Asked::Closest => (&[Switch::BendHalving], "--all and --any".to_owned()),
+        Some(_) => return Ok(()),
+    };
+    if parts.with(heard) == On::ALL {
+        return Ok(());
+    }
+    Err(Failure::Usage {
+        message: format!("--by-the-letter and --without are not for {of}"),
+        help:
+            "the parts are those of the paper's four methods, and of the closest hit: name one of these with --method"
+                .to_owned(),
+    })
 }
 
 /// Threads for one command.

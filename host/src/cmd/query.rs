@@ -9,7 +9,7 @@ use patchray::ray::Incidence;
 
 use super::load::{self, Loaded};
 use super::outputs::{Outputs, StatsOutputs};
-use super::{Failure, pool, progress, say, say_gave_up, summary};
+use super::{Failure, hear_parts, pool, progress, say, say_gave_up, summary};
 use crate::batch::Batch;
 use crate::number::Number;
 use crate::output::{Output, OutputError};
@@ -90,6 +90,7 @@ pub fn run(args: &QueryArgs) -> Result<(), Failure> {
     if settings.method.needs_view() {
         return Err(only_views(settings.method));
     }
+    hear_parts(Some(settings.method), asked, settings.parts)?;
     let reader = Rays::open(rays, flags.on_invalid())?;
     let mut out = Output::create(output)?;
     let stats_outputs = StatsOutputs::create(flags)?;

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::outputs::{Outputs, StatsOutputs};
-use super::{Failure, pool, progress};
+use super::{Failure, hear_parts, pool, progress};
 use crate::output::{self, Output};
 use crate::report::stress::{Report, families};
 use crate::report::table::Style;
 use crate::scene::nearest::did_you_mean;
 use crate::scene::trace::Precision;
 use crate::settings::{Flags, Settings};
-use crate::stats::{SCHEMA, to_json};
+use crate::stats::{Asked, SCHEMA, to_json};
 use crate::stress::bounds::{Bounds, RAYS, SEED, broken};
 use crate::stress::case::Family;
 use crate::stress::families::all;
@@ -83,6 +83,7 @@ pub fn run(args: &StressArgs) -> Result<(), Failure> {
     let mut out = output.map(Output::create).transpose()?;
 
     let settings = Settings::of_flags(flags);
+    hear_parts(flags.method, Asked::Closest, settings.parts)?;
     let plan = Plan { settings: &settings, seed: *seed, rays: *rays };
     let precisions: Vec<Precision> = match flags.precision {
         Some(precision) => vec![precision],

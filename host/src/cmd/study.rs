@@ -7,13 +7,13 @@ use clap::Args;
 use serde::Serialize;
 
 use super::outputs::{Outputs, StatsOutputs};
-use super::{Failure, load, pool, progress, say};
+use super::{Failure, hear_parts, load, pool, progress, say};
 use crate::oracle::Oracle;
 use crate::output;
 use crate::scene::nearest::did_you_mean;
 use crate::scene::teapot::common_scene;
 use crate::settings::{Flags, Settings, SizeFlag};
-use crate::stats::{SCHEMA, to_json};
+use crate::stats::{Asked, SCHEMA, to_json};
 use crate::study::folder::{Folder, FolderError, Manifest};
 use crate::study::plan::{Cell, Shard, plan};
 use crate::study::replay::replay;
@@ -173,6 +173,7 @@ fn subject(args: &StudyArgs, outputs: &Outputs) -> Result<Subject, Failure> {
     let StudyArgs { scene, size, flags, .. } = args;
     let size = size.size.unwrap_or(SIZE);
     let words = words_of(flags);
+    hear_parts(flags.method, Asked::Closest, Settings::of_flags(flags).parts)?;
     let Some(path) = scene else {
         let scene = common_scene()?;
         return Ok(Subject {

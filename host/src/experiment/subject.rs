@@ -117,6 +117,9 @@ pub fn ladder(family: Family) -> Vec<Subject> {
     steps
 }
 
+/// The change by which what lies behind the closest hit so far is left out.
+pub const PRUNING: &str = "pruning";
+
 /// A change of one thing, and the improved and the original method to the letter but for that.
 pub struct Change {
     /// What it is.
@@ -137,7 +140,7 @@ pub fn changes(family: Family) -> Vec<Change> {
         change.subjects.iter_mut().for_each(|subject| subject.critical_factor = Some(factor));
         change
     };
-    let mut all = vec![with("pruning", Switch::Pruning)];
+    let mut all = vec![with(PRUNING, Switch::Pruning)];
     match family {
         Family::Numerical => all.push(with("early end", Switch::EarlyEnd)),
         Family::Clipping => {

@@ -198,3 +198,22 @@ fn threads_and_order_change_no_line() {
     let answers = printed(&folder.done("query teapot.bpt rays.csv --all --skip-invalid"));
     assert!(answers.contains("\n0,0,,,,,,,,invalid\n1,1,"), "{answers}");
 }
+
+/// Parts of methods are refused where leaving them out would change nothing.
+#[test]
+fn parts_are_left_out_of_what_has_them_alone() {
+    let folder = Folder::new();
+    folder.put("rays.csv", "ox,oy,oz,dx,dy,dz\n0,-5,1,0,1,0\n");
+    let scene = "surfaces = [{ file = \"teapot.bpt\" }]\n[camera]\neye = [8, -9, 7]\nlook_at = [0, 0, 1]\nfov = 30\n";
+    folder.put("scene.toml", scene);
+    let ours = "not for `newton-predicted`";
+    folder.fails("render scene.toml --method newton-predicted --by-the-letter -o a.png", 2, &[ours]);
+    folder.fails("render scene.toml --method newton-predicted --without pruning -o a.png", 2, &[ours]);
+    folder.fails("stress --method clipping-predicted --without pruning", 2, &["not for `clipping-predicted`"]);
+    folder.fails("stress --without pruning", 2, &["not for several methods"]);
+    folder.fails("study --by-the-letter -o study", 2, &["not for several methods"]);
+    folder.fails("query teapot.bpt rays.csv --all --by-the-letter", 2, &["not for --all and --any"]);
+    folder.fails("query teapot.bpt rays.csv --any --without known-roots", 2, &["not for --all and --any"]);
+    folder.done("render scene.toml --size 8x8 --method newton-predicted --without coherence -o a.png");
+    folder.done("query teapot.bpt rays.csv --by-the-letter");
+}
