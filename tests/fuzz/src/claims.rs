@@ -76,12 +76,12 @@ impl Exactness {
         }
     }
 
-    /// As a length, of a surface, where coordinates of other things as large as `at_hand` take part. Nothing that stands elsewhere
-    /// in the scene does.
+    /// As a length, of a surface, whose coordinates are taken relative to something whose own are as large as `at_hand`: a view's
+    /// eye. Nothing that stands elsewhere in the scene takes part.
     pub(crate) fn length(self, surface: &ModelSurface, at_hand: f64) -> f64 {
         let [least, per_degree] = ROUNDINGS;
         let roundings = least + per_degree * (surface.degree_u + surface.degree_v) as f64;
-        self.share * size(surface) + roundings * self.unit * largest_coordinate(surface).max(at_hand)
+        self.share * size(surface) + roundings * self.unit * (largest_coordinate(surface) + at_hand)
     }
 
     /// What rounding t moves the ray's point by, along the ray.
