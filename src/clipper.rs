@@ -140,7 +140,7 @@ impl<'s, 'm, P: Point> Clipper<'_, 's, 'm, P> {
         let whole: &[P::Flat] = whole.get(..surface.net.points().len()).ok_or(Limit::Scratch)?;
         let exact = Exactness::of(surface, planes, limits);
         let degrees = surface.net.degrees();
-        let part = Part::whole(degrees, whole, exact.of_net::<P::Flat>(degrees), part);
+        let part = Part::whole(reading, degrees, whole, exact.of_net::<P::Flat>(degrees), part);
         let mut part = part.map_err(|Full| Limit::Scratch)?;
         if let (Some(part), Some(region)) = (&mut part, region) {
             part.become_region(whole, region);
@@ -286,6 +286,7 @@ impl<P: Point, R: Reading> Roots<'_, '_, '_, P, R> {
                         stuck = true;
                         Step::On
                     }
+                    // Ours: what a clip leaves that does not shorten the interval enough is let go, and the interval halved as it was.
                     Clip::Part(_) => {
                         let halves = || {
                             let much_longer = part.much_longer().filter(|_| reading.long_side());

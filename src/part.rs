@@ -5,6 +5,7 @@ use crate::casteljau;
 use crate::clip::{Noise, chords, corners};
 use crate::parameter::Parameter;
 use crate::point::Flat;
+use crate::reading::Reading;
 use crate::region::Region;
 use crate::scalar::Scalar;
 use heapless::vec::VecView;
@@ -25,16 +26,19 @@ pub(crate) struct Part<'a, F: Flat> {
 
 impl<'a, F: Flat> Part<'a, F> {
     /// The whole surface, its projected net, off by `error` at most, copied into lent room; `None` if it is seen to pass the
-    /// ray by.
+    /// ray by, which is a departure: the paper's clipping finds it out.
     #[inline(always)]
     pub(crate) fn whole(
+        reading: impl Reading,
         degrees: Degrees,
         whole: &[F],
         error: F::Scalar,
         room: &'a mut VecView<F>,
     ) -> Result<Option<Self>, Full> {
-        let Some(reach) = straddling(whole, error) else {
-            return Ok(None);
+        let reach = match straddling(whole, error) {
+            Some(reach) => reach,
+            None if reading.box_first() => return Ok(None),
+            None => reach(whole),
         };
         if room.len() < whole.len() {
             room.resize(whole.len(), F::ZERO).map_err(|_| Full)?;

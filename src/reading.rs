@@ -61,6 +61,8 @@ switches! {
     /// A departure: the yes or no of clipping's testing ray is said as soon as it is known. The paper's list of patches is completed
     /// first.
     quick_verdict: false,
+    /// A departure: a surface all of whose control points lie to one side of a plane of the ray is left out before it is clipped.
+    box_first: false,
     /// A departure: Newton's method, where it is proved to lead to the only root of a region, stands for the last clips.
     newton_end: false,
     /// A departure: a region that a clip does not shorten enough is looked at across the ray before it is bisected.
@@ -70,7 +72,7 @@ switches! {
     long_side: false,
     /// A departure: lines along chords that are all but parallel are spread before distances to them are taken.
     spread_lines: false,
-    /// A departure: a root that clipping finds again, from another region, is known again. The paper's counts for another point.
+    /// A departure: a root that clipping finds again, from another region, is known again. It counts for another point all the same.
     known_roots: false,
     /// A choice where the text is open: a surface is halved where it strays farther from its chord, by the bound of the second
     /// derivative over the piece. Without, it is where its tangent turns more: by that over the length of the chord.

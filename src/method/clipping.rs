@@ -1,8 +1,8 @@
 //! The original subdivision method: Bézier clipping.
 //!
 //! Each surface that the ray may meet is projected and clipped, without patches and without a grid. All its roots are found and
-//! count as intersection points, and the closest is the answer. A departure: a whole surface behind the closest hit so far is
-//! left out.
+//! count as intersection points, and the closest is the answer. Departures: a whole surface behind the closest hit so far is left
+//! out, and so is one whose projected control points all lie to one side.
 //!
 //! Source: Nishita, Sederberg and Kakimoto (1990); the paper's section "Clipping Process of Bézier Clipping". See
 //! [`crate::clipper`].

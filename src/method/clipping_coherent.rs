@@ -7,7 +7,7 @@
 //! root, the rest is left alone, else all of it is clipped.
 //!
 //! Source: the paper's section "An Improvement of Bézier Clipping". Where its text leaves a choice:
-//! - ours: a ray that misses a surface empties the surface's memory, so that the next one clips directly;
+//! - ours: a ray that misses a surface whose box it meets empties the surface's memory, so that the next one clips directly;
 //! - ours: a root before the interval says nothing about what lies in it, and is not the first root;
 //! - ours: a root is not verified when no region waits any more;
 //! - ours: if no region that waits holds the previous (u, v), the nearest is first.

@@ -6,7 +6,7 @@
 //! Newton's method from the patches that it meets decides.
 //!
 //! Source: the paper's section "Improvement of Barth and Stürzlinger's Algorithm". Where its text leaves a choice:
-//! - ours: a ray that misses a surface empties the surface's memory, so that the next one searches in full;
+//! - ours: a ray that misses a surface whose box it meets empties the surface's memory, so that the next one searches in full;
 //! - ours: patches are decided in the order in which the testing ray meets them, and no list is kept;
 //! - ours: from a listed patch Newton's method tries the entrance of the ray, then the parallelogram and the exit: the paper's
 //!   entrance of the testing ray is none where that begins inside;
@@ -171,7 +171,8 @@ impl<P: Point, F: Fallback<P>, R: Reading> Search<'_, '_, '_, P, F, R> {
         Ok(closest)
     }
 
-    /// The closest root by a search along the ray, front to back, that ends where nothing farther on can hold a closer one.
+    /// The closest root by a search along the ray, front to back, that ends where nothing farther on can hold a closer one; by the
+    /// paper's letter, with the surface.
     fn in_full(&mut self, work: &mut Work) -> Result<Option<Root<P::Parameter>>, Limit> {
         let (planes, limits) = (self.solver.planes, self.solver.limits);
         work.full_searches += 1;

@@ -53,6 +53,7 @@ struct One<'a> {
 /// What a ray came to.
 #[derive(Debug, Default, PartialEq)]
 struct Tally {
+    clips: u32,
     points: u32,
     closest: u32,
     critical: u32,
@@ -129,7 +130,7 @@ impl One<'_> {
     }
 
     /// Clips a region's parameters alternately.
-    fn clip_down(&self, mut region: Region) -> Outcome {
+    fn clip_down(&self, mut region: Region, tally: &mut Tally) -> Outcome {
         loop {
             let widths = region.sides.map(|[low, high]| high - low);
             if widths.iter().all(|&width| width <= END) {
@@ -138,6 +139,7 @@ impl One<'_> {
             let k = region.next;
             region.next = 1 - k;
             let [low, high] = region.sides[k];
+            tally.clips += 1;
             match self.clip(&self.part(region.sides), k) {
                 None => return Outcome::Nothing,
                 Some([from, to]) if to - from <= 1.0 - THRESHOLD => {
@@ -175,7 +177,7 @@ impl One<'_> {
             if previous.is_some_and(|at| holds(&region, at)) {
                 prior = region;
             }
-            match self.clip_down(region) {
+            match self.clip_down(region, tally) {
                 Outcome::Nothing => {}
                 Outcome::Halves([first, second]) => pending.extend([second, first]),
                 Outcome::Point(at) => {
@@ -237,7 +239,12 @@ fn the_clipping_methods_are_the_text_s() {
         let patches = |number: u32| all.of_surface(number as usize).unwrap();
         let mut memory = vec![Remembered::EMPTY; scene.len()];
         let mut scratch = ClipScratch::<P, 16, 256, 64>::new();
-        let (mut rays, mut points) = (0, [0; 2]);
+        let (mut rays, mut points, mut clips) = (0, [0; 2], [[0; 2]; 2]);
+        let mut count = |k: usize, work: &Work, tally: &Tally| {
+            points[k] += tally.points;
+            clips[k][0] += work.clip_steps;
+            clips[k][1] += tally.clips;
+        };
         for (number, line) in lines.iter().enumerate() {
             let mut previous = vec![None; scene.len()];
             for one in line {
@@ -259,7 +266,7 @@ fn the_clipping_methods_are_the_text_s() {
                 let kernel = clipping::closest_by(letter, &scene, &ray, &interval, &limits, &mut room, &mut work);
                 assert!(same(kernel.unwrap(), best), "{name}: {one:?}: {kernel:?} {best:?}");
                 assert_eq!(work.intersection_points, tally.points, "{name}: {one:?}");
-                points[0] += tally.points;
+                count(0, &work, &tally);
 
                 let (mut tally, mut best, mut work) = (Tally::default(), None, Work::default());
                 heard();
@@ -297,11 +304,15 @@ fn the_clipping_methods_are_the_text_s() {
                 let of_text = [tally.points, tally.closest, tally.critical, tally.hidden];
                 assert_eq!(counted, of_text, "{name}: {one:?}");
                 assert_eq!(lists(&heard), tally.lists, "{name}: {one:?}");
-                points[1] += tally.points;
+                count(1, &work, &tally);
                 rays += 1;
             }
         }
-        println!("{name}: {rays} rays, {points:?} points");
+        println!("{name}: {rays} rays, {points:?} points, {clips:?} clips");
+        // Where a clip ends on the last digits it may take one more.
+        for [kernel, of_text] in clips {
+            assert!(kernel.abs_diff(of_text) <= kernel / 200, "{name}: {clips:?}");
+        }
         assert_eq!(rays, 10_000);
     }
 }

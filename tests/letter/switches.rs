@@ -195,6 +195,12 @@ fn each_switch_of_the_clipping_methods_does_its_own() {
                 same: [clips, &["clip_steps", "verified", "refused_by_list", "intersection_points"]],
             },
             Expected {
+                name: "box first",
+                set: |switches| switches.box_first = true,
+                less: [clips, clips],
+                same: [&["surfaces_tested", "intersection_points"], &["surfaces_tested"]],
+            },
+            Expected {
                 name: "end by Newton",
                 set: |switches| switches.newton_end = true,
                 less: [clips, clips],

@@ -23,8 +23,10 @@ use crate::report::tables::{
 };
 use crate::scene::camera::{Camera, View};
 use crate::scene::file::Scene;
+use crate::scene::model::Model;
 use crate::scene::paper::{PaperScene, SCENES};
 use crate::scene::sampling::Sampling;
+use crate::scene::shapes::exchanged;
 use crate::scene::trace::Acceptance;
 use crate::settings::{Flags, Settings, SizeFlag};
 use crate::stats::SCHEMA;
@@ -120,7 +122,7 @@ pub fn run(args: &TablesArgs) -> Result<(), Failure> {
 /// How often a method's pass ends on one scene.
 fn passes(repetitions: u32, fewer: u32) -> u64 {
     let of = |family: Family| {
-        let few = 4 * 2 + 2 * 2 + 2 * 2 + ladder(family).len() + 2 + 2 * changes(family).len();
+        let few = 4 * 2 + 2 * 2 + 2 * 2 + ladder(family).len() + 2 + 2 * changes(family).len() + 2;
         letter(family).len() as u64 * u64::from(1 + repetitions) + few as u64 * u64::from(1 + fewer)
     };
     Family::ALL.into_iter().map(of).sum()
@@ -243,11 +245,14 @@ impl<'p> OnePaperScene<'p> {
         all.extend(changed.iter().flat_map(|change| on(&change.subjects, Rays::Picture(small))));
         let runs = experiment.measure(&all, fewer, truths(1))?;
         let (before, after) = runs.split_at(pair.len());
-        let of_changes = changed.iter().zip(after.chunks(pair.len())).map(|(change, after)| ChangeReport {
-            name: change.name,
-            before: before.to_vec(),
-            after: after.to_vec(),
-        });
+        let of_changes =
+            changed.iter().zip(after.chunks(pair.len())).map(|(change, after)| (change.name, after.to_vec()));
+        // Which of a surface's parameters is u is the model's choice, and clipping begins with u.
+        let exchanged = Model::numbered(self.scene.model.surfaces.iter().map(exchanged).collect());
+        let exchanged = Experiment { model: &exchanged, ..*experiment };
+        let exchanged = exchanged.measure(&on(pair, Rays::Picture(small)), fewer, truths(1))?;
+        let of_changes = of_changes.chain([("u and v exchanged", exchanged)]);
+        let of_changes = of_changes.map(|(name, after)| ChangeReport { name, before: before.to_vec(), after });
 
         let paper = match family {
             Family::Numerical => &self.paper.figures.numerical,

@@ -59,11 +59,13 @@ pub struct Subject {
     pub clip_threshold: Option<f64>,
     /// The factor of eq. (1); `None` for the paper's 1.
     pub critical_factor: Option<f64>,
+    /// How far from the ray a root may lie, as a share of its surface's size; `None` for the default, which is at rounding.
+    pub tolerance: Option<f64>,
 }
 
 impl Subject {
     fn new(name: &'static str, method: Method, parts: On) -> Self {
-        Subject { name, method, parts, clip_threshold: None, critical_factor: None }
+        Subject { name, method, parts, clip_threshold: None, critical_factor: None, tolerance: None }
     }
 
     /// How it is traced, all else being as in `settings`.
@@ -73,6 +75,7 @@ impl Subject {
             parts: self.parts,
             clip_threshold: self.clip_threshold.unwrap_or(settings.clip_threshold),
             critical_factor: self.critical_factor.unwrap_or(settings.critical_factor),
+            tolerance: self.tolerance.or(settings.tolerance),
             ..*settings
         }
     }
@@ -94,18 +97,20 @@ pub fn ladder(family: Family) -> Vec<Subject> {
     let kept = |name, on: On| Subject::new(name, family.improved(), on);
     let mut steps = vec![
         Subject::new("original to the letter", family.original(), On::LETTER),
-        Subject::new("+ front to back, early end", family.original(), pruned),
-        kept("+ grid", pruned.without(&[Switch::Coherence])),
+        Subject::new("+ pruning", family.original(), pruned),
+        kept("+ grid, early end", pruned.without(&[Switch::Coherence])),
         kept("+ coherence, believed", pruned.without(&[Switch::Verification])),
         kept("+ verification", pruned),
     ];
     if family == Family::Clipping {
         let quick = pruned.with(&[Switch::QuickVerdict]);
-        let spread = quick.with(&[Switch::SpreadLines]);
+        let boxes = quick.with(&[Switch::BoxFirst]);
+        let spread = boxes.with(&[Switch::SpreadLines]);
         let long = spread.with(&[Switch::LongSide]);
         let across = long.with(&[Switch::LookAcross]);
         let known = across.with(&[Switch::KnownRoots]);
         steps.push(kept("ours: + quick verdict", quick));
+        steps.push(kept("ours: + box first", boxes));
         steps.push(kept("ours: + spread lines", spread));
         steps.push(kept("ours: + longer side", long));
         steps.push(kept("ours: + look across", across));
@@ -142,9 +147,15 @@ pub fn changes(family: Family) -> Vec<Change> {
     };
     let mut all = vec![with(PRUNING, Switch::Pruning)];
     match family {
-        Family::Numerical => all.push(with("early end", Switch::EarlyEnd)),
+        Family::Numerical => {
+            all.push(with("early end", Switch::EarlyEnd));
+            let mut coarse = switched("tolerance 1e-6", On::LETTER);
+            coarse.subjects.iter_mut().for_each(|subject| subject.tolerance = Some(1e-6));
+            all.push(coarse);
+        }
         Family::Clipping => {
             all.push(with("quick verdict", Switch::QuickVerdict));
+            all.push(with("box first", Switch::BoxFirst));
             all.push(with("end by Newton", Switch::NewtonEnd));
             all.push(with("spread lines", Switch::SpreadLines));
             all.push(with("longer side", Switch::LongSide));

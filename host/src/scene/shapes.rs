@@ -135,6 +135,13 @@ pub fn torus(centre: [f64; 3], major: f64, minor: f64, around: usize, across: us
     about(centre, revolve(&section, &circle(around)))
 }
 
+/// The same surface with u and v exchanged. It counts as one that its file states as Bézier.
+pub fn exchanged(surface: &ModelSurface) -> ModelSurface {
+    let columns = surface.degree_v + 1;
+    let points = (0..columns).flat_map(|j| surface.points.iter().skip(j).step_by(columns).copied()).collect();
+    ModelSurface { degree_u: surface.degree_v, degree_v: surface.degree_u, points, knots: None, ..*surface }
+}
+
 /// The same surface with degrees raised to `m` and `n`, each at least its own (Farin, section 5.1).
 pub fn elevate(surface: &ModelSurface, m: usize, n: usize) -> ModelSurface {
     let raise = |row: Vec<[f64; 4]>| {

@@ -34,6 +34,8 @@ names! {
     EarlyEnd = early_end,
     /// A departure: say the yes or no of clipping's testing ray as soon as it is known
     QuickVerdict = quick_verdict,
+    /// A departure: leave out a surface that lies to one side of the ray before it is clipped
+    BoxFirst = box_first,
     /// A departure: let Newton's method stand for the last clips where it is proved to lead to the only root
     NewtonEnd = newton_end,
     /// A departure: look across the ray at a region that a clip does not shorten enough, before it is bisected

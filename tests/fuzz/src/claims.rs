@@ -100,7 +100,7 @@ pub(crate) fn size(surface: &ModelSurface) -> f64 {
     extent(0).hypot(extent(1)).hypot(extent(2))
 }
 
-fn largest_coordinate(surface: &ModelSurface) -> f64 {
+pub(crate) fn largest_coordinate(surface: &ModelSurface) -> f64 {
     let coordinates = surface.points.iter().flat_map(|[x, y, z, _]| [x, y, z]);
     coordinates.fold(0.0, |most, c| most.max(c.abs()))
 }
