@@ -52,12 +52,12 @@ In instructions, which no other work on the machine disturbs, the parts are wort
 
 | Saved instructions, % | numerical | clipping |
 | --- | --- | --- |
-| improved method over original, to the letter | -11, 27, -45, 5 | -2, 20, -4, 18 |
+| improved method over original, to the letter | -11, 27, -45, 5 | -2, 20, -3, 18 |
 | of these the grid in place of what the original has | -18, 5, -47, -11 | -4, -1, -4, -1 |
 | and coherence, over the same with nothing kept | 6, 24, 2, 14 | 2, 21, 0, 19 |
-| original: + front to back, early end | 32, 2, 30, 43 | 35, 1, 28, 49 |
-| + grid | -7, 34, -31, 10 | -5, -1, -4, -1 |
-| + coherence, believed | 12, 16, 6, 11 | 6, 31, 5, 21 |
+| original: + pruning | 32, 2, 30, 43 | 35, 1, 29, 50 |
+| + grid, early end | -7, 34, -31, 10 | -5, -1, -4, -1 |
+| + coherence, believed | 12, 16, 6, 11 | 6, 31, 4, 21 |
 | + verification | -15, -24, -10, -17 | -3, -14, -4, -5 |
 
 **The numerical method loses elsewhere what coherence gains: its grid takes longer than the tree that it replaces.** A tree says that \
