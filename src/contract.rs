@@ -91,8 +91,8 @@ pub(crate) fn contract<P: Point>(
         let near = [[next[0].plus(-slack_u), next[0].plus(slack_u)], [next[1].plus(-slack_v), next[1].plus(slack_v)]];
         // A root is proved to lie there; and the step, shorter than all that the region allows for, leaves no more than the
         // tolerance.
-        // Rounding of the step may be more, where the ray is all but tangent or the weight falls.
-        let regular = local.is_regular_enough::<P::Flat>([du, dv], exact);
+        // Of a rational surface the rounding of the step may be more, where the weight falls.
+        let regular = !P::RATIONAL || local.is_regular_enough::<P::Flat>([du, dv], exact);
         let lands = local.is_linear::<P::Flat>(surface.strays([du, dv]), [du, dv], exact) && regular;
         if region.encloses(near) && lands {
             return Ok(Contraction::Done(Some(Place { at: next, local })));
@@ -106,8 +106,8 @@ pub(crate) fn contract<P: Point>(
         if local.is_linear::<P::Flat>(bound, halves, exact) || smaller.as_ref().is_some_and(stays) {
             let off =
                 |next: [P::Parameter; 2], held: [P::Parameter; 2]| [next[0].minus(held[0]), next[1].minus(held[1])];
-            let (mut local, mut next, held, mut regular) = (local, next, region.nearest(next), regular);
-            let seen = if P::RATIONAL { next == held && lands } else { regular };
+            let (mut local, mut next, held) = (local, next, region.nearest(next));
+            let seen = !P::RATIONAL || (next == held && lands);
             if !(seen && local.may_hold(off(next, held), exact)) {
                 // What the step leaves across the ray is within the tolerance, but where the ray is all but tangent it carries
                 // far along the surface, and toward the border a weight may fall, by which distances grow: one more from the
@@ -117,7 +117,6 @@ pub(crate) fn contract<P: Point>(
                     return Ok(Contraction::Open);
                 };
                 next = [held[0].plus(du), held[1].plus(dv)];
-                regular = local.is_regular_enough::<P::Flat>([du, dv], exact);
             }
             // A root that rounding has moved out of its region is where it is, if by no more than what is allowed for: of
             // neighbours that meet where the ray is all but tangent, each may find it in the other. One beyond the surface's
@@ -130,11 +129,11 @@ pub(crate) fn contract<P: Point>(
             let within = if P::RATIONAL { region.around(P::Scalar::HALF) } else { Region::WHOLE };
             let at = within.nearest(next);
             if may_lie(next) && local.may_hold(off(next, at), exact) {
-                if !P::RATIONAL && regular {
+                if !P::RATIONAL {
                     return Ok(Contraction::Done(Some(Place { at, local })));
                 }
                 // What is bounded is the numerator: where the weight falls, all of it may be small, and the point far from the
-                // ray; and what a step that may be all rounding leaves is not bounded. So the place is looked at.
+                // ray. So the place is looked at.
                 let place = Place::look(at, surface.net.degrees(), whole, basis)?;
                 let on_the_ray = place.local.distance() <= loose.allowed();
                 return Ok(if on_the_ray { Contraction::Done(Some(place)) } else { Contraction::Open });

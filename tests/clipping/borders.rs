@@ -9,8 +9,8 @@ use patchray::limits::Limits;
 use patchray::point::{Plain, Weighted};
 use patchray::scalar::Scalar;
 use patchray_host::oracle::Oracle;
-use patchray_host::scene::model::{Model, ModelSurface};
-use patchray_host::scene::shapes::{Random, bumpy, exchanged, single, sphere, torus};
+use patchray_host::scene::model::Model;
+use patchray_host::scene::shapes::{Random, bumpy, single, sphere, torus};
 use patchray_host::scene::teapot;
 
 /// Which points of a surface rays go through.
@@ -139,57 +139,4 @@ fn no_ray_slips_through_a_border_f64() {
 #[test]
 fn no_ray_slips_through_a_border_f32() {
     all::<f32>(1.5);
-}
-
-/// Rays along surfaces that all but vanish as they see them: through a border where both derivatives are seen parallel, or all but.
-/// There a step is mostly rounding, and whatever is answered is a point of the ray.
-fn along_borders<P: Kind>(allowed: f64) {
-    let (mut room, mut random) = (Room::<P>::new(), Random(83));
-    let (mut hits, mut farthest) = (0, 0.0_f64);
-    for k in 0..10_000 {
-        let (edge, d) = (direction(&mut random, 0.0), direction(&mut random, 0.0));
-        let tilt = 10.0_f64.powf(random.within(-16.0, -5.0));
-        let lean = add(edge.map(|c| c * random.within(-1.0, 1.0)), random.within(-1.0, 1.0), d);
-        let lean = add(lean, tilt, cross(edge, d));
-        let corner = direction(&mut random, 0.0);
-        let border = [add(corner, -1.0, edge), corner];
-        // The rows of control points along u, the last on the border.
-        let degree = 1 + k % 3;
-        let rows = (0..=degree).flat_map(|i| {
-            let strayed = if i + 2 > degree { [0.0; 3] } else { direction(&mut random, 0.0) };
-            border.map(|p| add(add(p, -((degree - i) as f64), lean), 0.25, strayed))
-        });
-        let points = rows.map(|[x, y, z]| [x, y, z, 1.0]).collect();
-        let (degree_u, degree_v) = (degree, 1);
-        let surface = ModelSurface { number: 0, degree_u, degree_v, rational: false, points, knots: None };
-        let surface = if k % 2 == 0 { surface } else { exchanged(&surface) };
-        let model = single(surface);
-        let built = Built::<P>::new(&model, 1.0);
-        let scene = built.scene();
-        let unit = f64::from(-scene.frame().exponent()).exp2();
-        let through = add(corner, -random.within(-0.01, 1.0).max(0.0), edge);
-        let query = Query::new(add(through, -random.within(0.5, 4.0), d), d);
-        let answers = ask(&built, &query, &Limits::default(), &mut room);
-        for hit in &answers.hits {
-            let net = scene.surface(0).unwrap().net;
-            let jet = net.jet(hit.u, hit.v, &mut Basis::<P::Scalar, 16>::new().view()).unwrap();
-            let point = jet.point.position().map(|c| c.to_f64() * unit);
-            let off = norm(add(add(query.origin, hit.t.to_f64(), query.direction), -1.0, point));
-            farthest = farthest.max(off);
-            assert!(off <= allowed, "{k}: {off:e} off, tilt {tilt:e}, {hit:?} {query:?} {model:?}");
-            hits += 1;
-        }
-    }
-    println!("{hits} hits, {farthest:e} off at most");
-    assert!(hits > 1000, "{hits}");
-}
-
-#[test]
-fn what_is_met_along_a_border_is_on_the_ray_f64() {
-    along_borders::<Plain<f64>>(5e-14);
-}
-
-#[test]
-fn what_is_met_along_a_border_is_on_the_ray_f32() {
-    along_borders::<Plain<f32>>(1e-5);
 }
