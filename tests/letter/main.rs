@@ -2,7 +2,7 @@
 //! parts switched by itself.
 //!
 //! The second implementation is slow: it looks at every patch of every surface whose box the ray meets, keeps lists, and leaves
-//! nothing out. It shares with the kernel what has tests of its own: subdivision, the scene's grid and boxes, the tests of
+//! nothing out. It shares with the kernel what has tests of its own: subdivision, projection, the scene's grid and boxes, the tests of
 //! parallelepipeds and the starts in them, and one solve by Newton's method. Where the text is open it reads it as the kernel does.
 
 mod clipping;
