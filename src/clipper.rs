@@ -280,7 +280,7 @@ impl<P: Point, R: Reading> Roots<'_, '_, '_, P, R> {
                     // collapsed edge, is not to be halved when the other, settled as seen across its own line, is what keeps it
                     // from being clipped.
                     //
-                    // Along a collapsed edge each half is as long as the whole, down to the edge: the other parameter is clipped
+                    // Ours: along a collapsed edge each half is as long as the whole, down to the edge: the other parameter is clipped
                     // toward it as long as that shortens it.
                     Clip::Part(_) if !(stuck || settled) && part.is_collapsed(direction) => {
                         stuck = true;

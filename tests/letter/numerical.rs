@@ -241,8 +241,6 @@ fn the_numerical_methods_are_the_text_s() {
                     }
                 });
                 assert!(same(kernel.unwrap(), best), "{name}: {one:?}: {kernel:?} {best:?}");
-                // Not how often Newton's method is begun: the kernel's grid also leads to patches beside the stretch that is
-                // searched, whose points are the same ones or none.
                 let counted = [
                     work.intersection_points,
                     work.newton_starts,
