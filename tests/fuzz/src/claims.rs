@@ -76,12 +76,12 @@ impl Exactness {
         }
     }
 
-    /// As a length, of a surface, whose coordinates are taken relative to something whose own are as large as `at_hand`: a view's
-    /// eye. Nothing that stands elsewhere in the scene takes part.
+    /// As a length, of a surface, where coordinates of other things as large as `at_hand` take part. Nothing that stands elsewhere
+    /// in the scene does.
     pub(crate) fn length(self, surface: &ModelSurface, at_hand: f64) -> f64 {
         let [least, per_degree] = ROUNDINGS;
         let roundings = least + per_degree * (surface.degree_u + surface.degree_v) as f64;
-        self.share * size(surface) + roundings * self.unit * (largest_coordinate(surface) + at_hand)
+        self.share * size(surface) + roundings * self.unit * largest_coordinate(surface).max(at_hand)
     }
 
     /// What rounding t moves the ray's point by, along the ray.
@@ -100,7 +100,7 @@ pub(crate) fn size(surface: &ModelSurface) -> f64 {
     extent(0).hypot(extent(1)).hypot(extent(2))
 }
 
-pub(crate) fn largest_coordinate(surface: &ModelSurface) -> f64 {
+fn largest_coordinate(surface: &ModelSurface) -> f64 {
     let coordinates = surface.points.iter().flat_map(|[x, y, z, _]| [x, y, z]);
     coordinates.fold(0.0, |most, c| most.max(c.abs()))
 }

@@ -58,7 +58,8 @@ impl OfKind for Coherence {
             for way in [way.original().unwrap_or(Way::Clipping), way] {
                 let kept = lane.remembered.clone();
                 let extent = way.extent(&prepared, limits.acceptance);
-                let answer = truth.judged(&format!("{way:?}"), &limits, original, |limits| {
+                let bound = if way.original().is_some() { original } else { Original::Open };
+                let answer = truth.judged(&format!("{way:?}"), &limits, bound, |limits| {
                     // Memory as it was: what a search leaves there would help the next.
                     lane.remembered.clone_from(&kept);
                     let answer = lane.closest(way, &prepared, scan_line, &ray, &interval, limits);
@@ -66,9 +67,7 @@ impl OfKind for Coherence {
                     within_worst_case(&lane.work, limits, &extent, way);
                     answer
                 });
-                if answer.is_ok() && way.original().is_some() {
-                    original = Original::Answers;
-                }
+                original = if answer.is_ok() { Original::Answers } else { Original::Open };
                 for hit in answer.into_iter().flatten() {
                     in_range(&hit, range, surfaces, way);
                     on_the_ray(&hit, case, &line, &limits, 0.0, way);

@@ -91,12 +91,12 @@ impl<'c> Truth<'c> {
         mut call: impl FnMut(&Limits<S>) -> Answer<S>,
     ) -> Answer<S> {
         let mut answer = call(limits);
-        let answered = |original| match original {
+        let answered = || match original {
             Original::Open => false,
             Original::Answers => true,
             Original::AnswersRoundedOtherwise => self.is_sure(),
         };
-        if out_of_budget(&answer) && (answered(original) || self.is_clear()) {
+        if out_of_budget(&answer) && (answered() || self.is_clear()) {
             answer = call(&with_default_budgets(limits));
             let why = if original == Original::Open { "is clear" } else { "its original answers" };
             assert!(!out_of_budget(&answer), "{name}: {answer:?} under default budgets of a ray that {why}; {self}");

@@ -3,7 +3,7 @@
 //! against the oracle.
 
 use crate::bytes::Bytes;
-use crate::claims::{in_range, largest_coordinate, on_the_ray, within_limits, within_worst_case};
+use crate::claims::{in_range, on_the_ray, within_limits, within_worst_case};
 use crate::common::{Kind, Prepared};
 use crate::input::{Case, OfKind, any_limits, in_kernel, interval, limits, number, subdivision, with_kind};
 use crate::lane::{Lane, Way};
@@ -67,9 +67,7 @@ impl OfKind for Views {
         let mut thread = Thread::<P>::new(surfaces);
         scribble(&mut bytes, &mut thread.followed);
         thread.last = bytes.count();
-        // Turned to the view a coordinate is a sum of three products, of what lies between the eye and any of the scene's points.
-        let eye = camera.eye.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let at_hand = eye + case.model.surfaces.iter().map(largest_coordinate).fold(0.0, f64::max);
+        let at_hand = camera.eye.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         let original = original.filter(|_| compared);
         let Ok(mut room) = ViewRoom::for_view(&prepared, &in_kernel) else {
             return;
